@@ -1,0 +1,1 @@
+"""Metric fields: which mesh do we want?"""

@@ -1,0 +1,1 @@
+"""anistar: certified anisotropic Delaunay mesh adaptation for any PDE code."""

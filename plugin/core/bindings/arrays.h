@@ -1,0 +1,29 @@
+#pragma once
+// NumPy arrays in and out: no silent conversion in, no copy out.
+
+#include <cstdint>
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <vector>
+
+namespace anistar::bindings {
+
+namespace nb = nanobind;
+
+template <class T, class Shape>
+using Input = nb::ndarray<const T, Shape, nb::c_contig, nb::device::cpu>;
+template <class T> using Array1 = Input<T, nb::shape<-1>>;
+template <class T> using Array2 = Input<T, nb::shape<-1, -1>>;
+template <class T> using Array3 = Input<T, nb::shape<-1, -1, -1>>;
+
+/// Hands `values` over to NumPy as an array of the given shape, without copy.
+template <class T>
+[[nodiscard]] nb::ndarray<nb::numpy, T> owned(std::vector<T> &&values,
+                                              std::initializer_list<std::size_t> shape) {
+  auto *kept = new std::vector<T>(std::move(values));
+  nb::capsule owner(kept,
+                    [](void *p) noexcept { delete static_cast<std::vector<T> *>(p); });
+  return nb::ndarray<nb::numpy, T>(kept->data(), shape, owner);
+}
+
+} // namespace anistar::bindings

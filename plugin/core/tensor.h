@@ -1,0 +1,172 @@
+#pragma once
+// Small vectors and symmetric tensors of dimension d: the algebra of metrics.
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace anistar {
+
+template <std::size_t d> using Vector = Eigen::Matrix<double, static_cast<int>(d), 1>;
+template <std::size_t d>
+using Matrix = Eigen::Matrix<double, static_cast<int>(d), static_cast<int>(d)>;
+
+/// A symmetric tensor; its entries are the rows of the lower triangle:
+/// xx, xy, yy in 2D and xx, xy, yy, xz, yz, zz in 3D (the order of Medit).
+template <std::size_t d> struct SymmetricTensor {
+  static constexpr std::size_t n_entries = d * (d + 1) / 2;
+  std::array<double, n_entries> entries{};
+
+  [[nodiscard]] static constexpr std::size_t index(std::size_t i, std::size_t j) {
+    return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i;
+  }
+  [[nodiscard]] double operator()(std::size_t i, std::size_t j) const {
+    return entries[index(i, j)];
+  }
+  double &operator()(std::size_t i, std::size_t j) { return entries[index(i, j)]; }
+
+  SymmetricTensor &operator+=(const SymmetricTensor &other) {
+    for (std::size_t k = 0; k < n_entries; ++k)
+      entries[k] += other.entries[k];
+    return *this;
+  }
+  SymmetricTensor &operator*=(double factor) {
+    for (double &entry : entries)
+      entry *= factor;
+    return *this;
+  }
+  friend SymmetricTensor operator+(SymmetricTensor a, const SymmetricTensor &b) {
+    return a += b;
+  }
+  friend SymmetricTensor operator*(double factor, SymmetricTensor a) {
+    return a *= factor;
+  }
+};
+
+template <std::size_t d>
+[[nodiscard]] Matrix<d> as_matrix(const SymmetricTensor<d> &M) {
+  Matrix<d> full;
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t j = 0; j < d; ++j)
+      full(static_cast<int>(i), static_cast<int>(j)) = M(i, j);
+  return full;
+}
+
+template <std::size_t d>
+[[nodiscard]] SymmetricTensor<d> as_tensor(const Matrix<d> &full) {
+  SymmetricTensor<d> M;
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      M(i, j) = full(static_cast<int>(i), static_cast<int>(j));
+  return M;
+}
+
+/// v^T M v.
+template <std::size_t d>
+[[nodiscard]] inline double quadratic(const SymmetricTensor<d> &M, const Vector<d> &v) {
+  const auto &e = M.entries;
+  if constexpr (d == 2)
+    return e[0] * v[0] * v[0] + 2 * e[1] * v[0] * v[1] + e[2] * v[1] * v[1];
+  else
+    return e[0] * v[0] * v[0] + e[2] * v[1] * v[1] + e[5] * v[2] * v[2] +
+           2 * (e[1] * v[0] * v[1] + e[3] * v[0] * v[2] + e[4] * v[1] * v[2]);
+}
+
+/// M v.
+template <std::size_t d>
+[[nodiscard]] inline Vector<d> product(const SymmetricTensor<d> &M, const Vector<d> &v) {
+  Vector<d> out;
+  for (std::size_t i = 0; i < d; ++i) {
+    double sum = 0;
+    for (std::size_t j = 0; j < d; ++j)
+      sum += M(i, j) * v[static_cast<int>(j)];
+    out[static_cast<int>(i)] = sum;
+  }
+  return out;
+}
+
+template <std::size_t d>
+[[nodiscard]] inline double determinant(const SymmetricTensor<d> &M) {
+  const auto &e = M.entries;
+  if constexpr (d == 2)
+    return e[0] * e[2] - e[1] * e[1];
+  else
+    return e[0] * (e[2] * e[5] - e[4] * e[4]) - e[1] * (e[1] * e[5] - e[4] * e[3]) +
+           e[3] * (e[1] * e[4] - e[2] * e[3]);
+}
+
+/// Eigenvalues in increasing order, eigenvectors as columns.
+template <std::size_t d> struct Spectrum {
+  Vector<d> values;
+  Matrix<d> vectors;
+};
+
+template <std::size_t d>
+[[nodiscard]] inline Spectrum<d> spectrum(const SymmetricTensor<d> &M) {
+  if constexpr (d == 2) {
+    const double mean = .5 * (M(0, 0) + M(1, 1)), half = .5 * (M(0, 0) - M(1, 1));
+    const double off = M(0, 1), radius = std::sqrt(half * half + off * off);
+    double large = mean + radius, small = mean - radius;
+    if (mean < 0)
+      std::swap(large, small); // `large` has the larger modulus
+    // the quotient is accurate where the difference cancels
+    if (large != 0 && std::abs(small) < 1e-3 * std::abs(large))
+      small = (M(0, 0) * M(1, 1) - off * off) / large;
+    // eigenvector of the upper eigenvalue, from the row without cancellation
+    double c = half >= 0 ? radius + half : off, s = half >= 0 ? off : radius - half;
+    const double norm = std::sqrt(c * c + s * s);
+    if (norm > 0) {
+      c /= norm;
+      s /= norm;
+    } else {
+      c = 1;
+      s = 0;
+    }
+    const double upper = mean < 0 ? small : large, lower = mean < 0 ? large : small;
+    Spectrum<2> out;
+    out.values << lower, upper;
+    out.vectors << -s, c, c, s;
+    return out;
+  } else {
+    Eigen::SelfAdjointEigenSolver<Matrix<d>> solver(as_matrix(M));
+    return {solver.eigenvalues(), solver.eigenvectors()};
+  }
+}
+
+template <std::size_t d>
+[[nodiscard]] inline SymmetricTensor<d> compose(const Vector<d> &values,
+                                                const Matrix<d> &vectors) {
+  SymmetricTensor<d> M;
+  for (int i = 0; i < static_cast<int>(d); ++i)
+    for (int j = 0; j <= i; ++j) {
+      double sum = 0;
+      for (int k = 0; k < static_cast<int>(d); ++k)
+        sum += values[k] * vectors(i, k) * vectors(j, k);
+      M(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) = sum;
+    }
+  return M;
+}
+
+/// f(M) by the spectrum of M.
+template <std::size_t d, class Function>
+[[nodiscard]] inline SymmetricTensor<d> matrix_function(const SymmetricTensor<d> &M,
+                                                        Function f) {
+  Spectrum<d> s = spectrum(M);
+  for (int k = 0; k < static_cast<int>(d); ++k)
+    s.values[k] = f(s.values[k]);
+  return compose<d>(s.values, s.vectors);
+}
+
+/// @pre M is positive definite.
+template <std::size_t d>
+[[nodiscard]] inline SymmetricTensor<d> log(const SymmetricTensor<d> &M) {
+  return matrix_function(M, [](double x) { return std::log(x); });
+}
+
+template <std::size_t d>
+[[nodiscard]] inline SymmetricTensor<d> exp(const SymmetricTensor<d> &L) {
+  return matrix_function(L, [](double x) { return std::exp(x); });
+}
+
+} // namespace anistar
