@@ -8,7 +8,9 @@
 
 namespace anistar {
 
-template <std::size_t d> using Vector = Eigen::Matrix<double, static_cast<int>(d), 1>;
+/// Unaligned, so that a row of a NumPy array can be read as one wherever it starts.
+template <std::size_t d>
+using Vector = Eigen::Matrix<double, static_cast<int>(d), 1, Eigen::DontAlign>;
 template <std::size_t d>
 using Matrix = Eigen::Matrix<double, static_cast<int>(d), static_cast<int>(d)>;
 

@@ -1,5 +1,6 @@
-#include <nanobind/nanobind.h>
+#include "bind.h"
 
-namespace anistar::bindings {}
-
-NB_MODULE(_core, module) { module.doc() = "The compiled core of anistar."; }
+NB_MODULE(_core, module) {
+  module.doc() = "The compiled core of anistar.";
+  anistar::bindings::bind_locator(module);
+}

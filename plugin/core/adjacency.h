@@ -1,0 +1,46 @@
+#pragma once
+// Cells and how they meet.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace anistar {
+
+using Index = std::int32_t;
+inline constexpr Index none = -1;
+
+/// The d + 1 vertices of a simplex, positively oriented. Facet i lies opposite vertex i.
+template <std::size_t d> using Cell = std::array<Index, d + 1>;
+template <std::size_t d> using Facet = std::array<Index, d>;
+
+/// The vertices of facet i, oriented so that the cell is on its positive side:
+/// orientation(facet..., opposite vertex) > 0.
+template <std::size_t d>
+[[nodiscard]] constexpr Facet<d> facet_of(const Cell<d> &cell, std::size_t i) {
+  if constexpr (d == 2) {
+    return {cell[(i + 1) % 3], cell[(i + 2) % 3]};
+  } else {
+    constexpr std::size_t order[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
+    return {cell[order[i][0]], cell[order[i][1]], cell[order[i][2]]};
+  }
+}
+
+/// A facet seen from one of its two cells.
+struct HalfFacet {
+  Index cell = none;
+  Index facet = none;
+  friend bool operator==(const HalfFacet &, const HalfFacet &) = default;
+};
+
+template <std::size_t d> using Neighbours = std::array<HalfFacet, d + 1>;
+
+/// For every cell and facet the half-facet on the other side, {none, none} at the
+/// boundary. @throws std::invalid_argument when three cells share a facet.
+template <std::size_t d>
+[[nodiscard]] std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
+                                                   std::size_t n_points);
+
+} // namespace anistar

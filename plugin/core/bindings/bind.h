@@ -1,0 +1,10 @@
+#pragma once
+// One function per concept; module.cpp calls them all.
+
+#include <nanobind/nanobind.h>
+
+namespace anistar::bindings {
+
+void bind_locator(nanobind::module_ &module);
+
+} // namespace anistar::bindings

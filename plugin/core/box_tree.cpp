@@ -1,0 +1,32 @@
+#include "box_tree.h"
+
+#include "hilbert.h"
+
+namespace anistar {
+
+template <std::size_t d> BoxTree<d>::BoxTree(const std::vector<Box<d>> &boxes) {
+  std::vector<Vector<d>> centres(boxes.size());
+  for (std::size_t k = 0; k < boxes.size(); ++k)
+    centres[k] = .5 * (boxes[k].low + boxes[k].high);
+  items_ = hilbert_order<d>(centres);
+  item_boxes_.resize(boxes.size());
+  for (std::size_t k = 0; k < items_.size(); ++k)
+    item_boxes_[k] = boxes[static_cast<std::size_t>(items_[k])];
+
+  std::size_t n_leaves = 1;
+  while (n_leaves * leaf_size < items_.size())
+    n_leaves *= 2;
+  first_leaf_ = n_leaves - 1;
+  nodes_.resize(2 * n_leaves - 1); // empty leaves keep the empty box
+  for (std::size_t k = 0; k < items_.size(); ++k)
+    nodes_[first_leaf_ + k / leaf_size].extend(item_boxes_[k]);
+  for (std::size_t node = first_leaf_; node-- > 0;) {
+    nodes_[node].extend(nodes_[2 * node + 1]);
+    nodes_[node].extend(nodes_[2 * node + 2]);
+  }
+}
+
+template class BoxTree<2>;
+template class BoxTree<3>;
+
+} // namespace anistar

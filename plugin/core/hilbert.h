@@ -1,0 +1,18 @@
+#pragma once
+// The Hilbert curve: an order of points in which neighbours in memory are neighbours in
+// space, which is what the speed of every walk and every sweep depends on.
+
+#include "tensor.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace anistar {
+
+/// Indices of `points` in the order in which a Hilbert curve through their bounding box
+/// visits them; ties keep the given order.
+template <std::size_t d>
+[[nodiscard]] std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points);
+
+} // namespace anistar

@@ -1,0 +1,226 @@
+#include "locator.h"
+
+#include "hilbert.h"
+#include "predicates.h"
+
+#include <algorithm>
+
+namespace anistar {
+namespace {
+
+/// A walk from a good hint takes a handful of steps; one that takes more is on a mesh
+/// where it may cycle, and the tree answers instead.
+constexpr int max_walk_steps = 64;
+
+template <std::size_t d>
+std::vector<Box<d>> cell_boxes(std::span<const Vector<d>> points,
+                               std::span<const Cell<d>> cells) {
+  std::vector<Box<d>> boxes(cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (Index v : cells[c])
+      boxes[c].extend(points[static_cast<std::size_t>(v)]);
+  return boxes;
+}
+
+template <std::size_t d>
+std::vector<HalfFacet> boundary_facets(const std::vector<Neighbours<d>> &neighbours) {
+  std::vector<HalfFacet> out;
+  for (std::size_t c = 0; c < neighbours.size(); ++c)
+    for (std::size_t i = 0; i <= d; ++i)
+      if (neighbours[c][i].cell == none)
+        out.push_back({static_cast<Index>(c), static_cast<Index>(i)});
+  return out;
+}
+
+template <std::size_t d>
+std::vector<Box<d>> facet_boxes(std::span<const Vector<d>> points,
+                                std::span<const Cell<d>> cells,
+                                const std::vector<HalfFacet> &facets) {
+  std::vector<Box<d>> boxes(facets.size());
+  for (std::size_t k = 0; k < facets.size(); ++k)
+    for (Index v : facet_of<d>(cells[static_cast<std::size_t>(facets[k].cell)],
+                               static_cast<std::size_t>(facets[k].facet)))
+      boxes[k].extend(points[static_cast<std::size_t>(v)]);
+  return boxes;
+}
+
+/// Barycentric coordinates of the point of segment ab nearest to x.
+std::array<double, 2> nearest_on(const Vector<2> &x,
+                                 const std::array<Vector<2>, 2> &segment) {
+  const Vector<2> u = segment[1] - segment[0];
+  const double t =
+      std::clamp((x - segment[0]).dot(u) / std::max(u.squaredNorm(), 1e-300), 0., 1.);
+  return {1 - t, t};
+}
+
+/// The same for a triangle, by the regions of the plane around it (Ericson, Real-Time
+/// Collision Detection, 2005, section 5.1.5).
+std::array<double, 3> nearest_on(const Vector<3> &x,
+                                 const std::array<Vector<3>, 3> &triangle) {
+  const auto &[a, b, c] = triangle;
+  const Vector<3> ab = b - a, ac = c - a, ax = x - a, bx = x - b, cx = x - c;
+  const double d1 = ab.dot(ax), d2 = ac.dot(ax);
+  if (d1 <= 0 && d2 <= 0)
+    return {1, 0, 0};
+  const double d3 = ab.dot(bx), d4 = ac.dot(bx);
+  if (d3 >= 0 && d4 <= d3)
+    return {0, 1, 0};
+  const double d5 = ab.dot(cx), d6 = ac.dot(cx);
+  if (d6 >= 0 && d5 <= d6)
+    return {0, 0, 1};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0)
+    return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0)
+    return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0, 1 - t, t};
+  }
+  const double sum = va + vb + vc;
+  return {va / sum, vb / sum, vc / sum};
+}
+
+template <std::size_t d> double signed_volume(const Simplex<d> &s) {
+  if constexpr (d == 2)
+    return cross(s[1] - s[0], s[2] - s[0]);
+  else
+    return (s[1] - s[0]).dot((s[2] - s[0]).cross(s[3] - s[0]));
+}
+
+} // namespace
+
+template <std::size_t d>
+Locator<d>::Locator(std::span<const Vector<d>> points, std::span<const Cell<d>> cells)
+    : points_(points.begin(), points.end()), cells_(cells.begin(), cells.end()),
+      neighbours_(adjacency<d>(cells, points.size())),
+      boundary_(boundary_facets<d>(neighbours_)),
+      cell_tree_(cell_boxes<d>(points, cells)),
+      boundary_tree_(facet_boxes<d>(points, cells, boundary_)) {}
+
+template <std::size_t d> Simplex<d> Locator<d>::simplex(Index cell) const {
+  Simplex<d> s;
+  for (std::size_t i = 0; i <= d; ++i)
+    s[i] = points_[static_cast<std::size_t>(cells_[static_cast<std::size_t>(cell)][i])];
+  return s;
+}
+
+/// A visibility walk that remembers where it came from; `none` when it meets the
+/// boundary or its bound.
+template <std::size_t d> Index Locator<d>::walk(const Vector<d> &x, Index start) const {
+  Index cell = start, previous = none;
+  for (int step = 0; step < max_walk_steps; ++step) {
+    const Simplex<d> corners = simplex(cell);
+    Index next = none;
+    bool crossed = false;
+    for (std::size_t k = 0; k <= d && !crossed; ++k) {
+      const std::size_t i = (k + static_cast<std::size_t>(step)) % (d + 1);
+      const Index beyond = neighbours_[static_cast<std::size_t>(cell)][i].cell;
+      if (beyond == previous && beyond != none)
+        continue;
+      Simplex<d> replaced = corners;
+      replaced[i] = x;
+      if (orientation<d>(replaced) == Orientation::negative) {
+        next = beyond;
+        crossed = true;
+      }
+    }
+    if (!crossed)
+      return cell;
+    if (next == none)
+      return none;
+    previous = cell;
+    cell = next;
+  }
+  return none;
+}
+
+template <std::size_t d> Index Locator<d>::containing(const Vector<d> &x) const {
+  Index found = none;
+  cell_tree_.meeting(Box<d>{x, x}, [&](Index cell) {
+    const Simplex<d> corners = simplex(cell);
+    for (std::size_t i = 0; i <= d; ++i) {
+      Simplex<d> replaced = corners;
+      replaced[i] = x;
+      if (orientation<d>(replaced) == Orientation::negative)
+        return true;
+    }
+    found = cell;
+    return false;
+  });
+  return found;
+}
+
+template <std::size_t d>
+Location<d> Locator<d>::inside(const Vector<d> &x, Index cell) const {
+  const Simplex<d> corners = simplex(cell);
+  Location<d> at{cell, {}, 0};
+  double sum = 0;
+  for (std::size_t i = 0; i <= d; ++i) {
+    Simplex<d> replaced = corners;
+    replaced[i] = x;
+    at.barycentric[i] = std::max(0., signed_volume<d>(replaced));
+    sum += at.barycentric[i];
+  }
+  for (double &b : at.barycentric)
+    b /= sum;
+  return at;
+}
+
+template <std::size_t d> Location<d> Locator<d>::nearest(const Vector<d> &x) const {
+  Location<d> best;
+  double best_distance = std::numeric_limits<double>::infinity();
+  boundary_tree_.nearest(x, best_distance, [&](Index item, double) {
+    const HalfFacet half = boundary_[static_cast<std::size_t>(item)];
+    const Cell<d> &cell = cells_[static_cast<std::size_t>(half.cell)];
+    const Facet<d> facet = facet_of<d>(cell, static_cast<std::size_t>(half.facet));
+    std::array<Vector<d>, d> corners;
+    for (std::size_t i = 0; i < d; ++i)
+      corners[i] = points_[static_cast<std::size_t>(facet[i])];
+    const std::array<double, d> weights = nearest_on(x, corners);
+    Vector<d> foot = Vector<d>::Zero();
+    for (std::size_t i = 0; i < d; ++i)
+      foot += weights[i] * corners[i];
+    const double distance = (foot - x).squaredNorm();
+    if (distance < best_distance ||
+        (distance == best_distance && half.cell < best.cell)) {
+      best_distance = distance;
+      best.cell = half.cell;
+      best.barycentric.fill(0);
+      for (std::size_t i = 0; i < d; ++i)
+        best.barycentric[static_cast<std::size_t>(
+            std::find(cell.begin(), cell.end(), facet[i]) - cell.begin())] = weights[i];
+    }
+    return best_distance;
+  });
+  best.distance = std::sqrt(best_distance);
+  return best;
+}
+
+template <std::size_t d>
+Location<d> Locator<d>::locate(const Vector<d> &x, Index hint) const {
+  Index cell = hint == none ? none : walk(x, hint);
+  if (cell == none)
+    cell = containing(x);
+  return cell == none ? nearest(x) : inside(x, cell);
+}
+
+template <std::size_t d>
+std::vector<Location<d>>
+Locator<d>::locate_all(std::span<const Vector<d>> queries) const {
+  std::vector<Location<d>> out(queries.size());
+  Index hint = none;
+  for (Index k : hilbert_order<d>(queries)) {
+    const auto q = static_cast<std::size_t>(k);
+    out[q] = locate(queries[q], hint);
+    hint = out[q].cell;
+  }
+  return out;
+}
+
+template class Locator<2>;
+template class Locator<3>;
+
+} // namespace anistar
