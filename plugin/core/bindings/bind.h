@@ -6,5 +6,6 @@
 namespace anistar::bindings {
 
 void bind_locator(nanobind::module_ &module);
+void bind_remesh(nanobind::module_ &module);
 
 } // namespace anistar::bindings

@@ -3,4 +3,5 @@
 NB_MODULE(_core, module) {
   module.doc() = "The compiled core of anistar.";
   anistar::bindings::bind_locator(module);
+  anistar::bindings::bind_remesh(module);
 }
