@@ -1,5 +1,12 @@
 #include <nanobind/nanobind.h>
 
-namespace anistar::bindings {}
+namespace anistar::bindings {
 
-NB_MODULE(_core, module) { module.doc() = "The compiled core of anistar."; }
+void bind_gradation(nanobind::module_ &module);
+
+} // namespace anistar::bindings
+
+NB_MODULE(_core, module) {
+  module.doc() = "The compiled core of anistar.";
+  anistar::bindings::bind_gradation(module);
+}
