@@ -60,10 +60,7 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor,
 
 void extract(const Workspace &w, RemeshResult &out) {
   const Triangulation<2> &mesh = w.mesh;
-  for (const Vertex<2> &v : mesh.vertices) {
-    out.points.push_back(v.x);
-    out.metric.push_back(v.M);
-  }
+  out.vertices = mesh.vertices;
   out.cells = mesh.cells;
   out.cell_tags = mesh.region;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
@@ -109,7 +106,9 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   const std::size_t poor = repair(w, monitor, repair_floor);
   renumber();
 
+  watch.phase("report");
   extract(w, out);
+  out.statistics = measure(out.vertices, out.cells);
   watch.stop();
   out.counts["inserted"] = static_cast<double>(refined.inserted);
   out.counts["boundary_splits"] = static_cast<double>(refined.boundary_splits);

@@ -4,6 +4,7 @@
 #include "curves.h"
 #include "monitor.h"
 #include "shape.h"
+#include "statistics.h"
 
 #include <map>
 #include <string>
@@ -11,7 +12,6 @@
 namespace anistar {
 
 struct RemeshSettings {
-  double ridge_angle = 45;         ///< degrees
   double hausdorff_number = .1;    ///< of an edge, relative to its length
   std::size_t max_vertices = static_cast<std::size_t>(-1);
   double max_seconds = std::numeric_limits<double>::infinity();
@@ -19,13 +19,12 @@ struct RemeshSettings {
 
 /// The new mesh as flat arrays, and what happened.
 struct RemeshResult {
-  std::vector<Vector<2>> points;
-  std::vector<SymmetricTensor<2>> metric;
+  std::vector<Vertex<2>> vertices;
   std::vector<Cell<2>> cells;
   std::vector<Index> cell_tags;
   std::vector<Facet<2>> facets;
   std::vector<Index> facet_tags;
-  std::vector<Index> corners;
+  Statistics statistics;
   std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase
   StopReason reason = StopReason::finished;

@@ -10,43 +10,36 @@
 namespace anistar::bindings {
 namespace {
 
+/// Points (n, d) and full tensors (n, d, d) of vertices.
 template <std::size_t d>
-[[nodiscard]] std::vector<SymmetricTensor<d>> tensors_of(const Array3<double> &array) {
-  if (array.shape(1) != d || array.shape(2) != d)
-    throw std::invalid_argument("metric is not of shape (n, " + std::to_string(d) +
-                                ", " + std::to_string(d) + ")");
-  std::vector<SymmetricTensor<d>> out(array.shape(0));
-  const double *entry = array.data();
-  for (SymmetricTensor<d> &M : out)
-    for (std::size_t i = 0; i < d; ++i)
-      for (std::size_t j = 0; j < d; ++j, ++entry)
-        if (j <= i)
-          M(i, j) = *entry;
-  return out;
-}
-
-template <std::size_t d>
-[[nodiscard]] std::vector<double>
-full_tensors(const std::vector<SymmetricTensor<d>> &tensors) {
-  std::vector<double> out;
-  out.reserve(tensors.size() * d * d);
-  for (const SymmetricTensor<d> &M : tensors)
+void put_vertices(nb::dict &result, const std::vector<Vertex<d>> &vertices) {
+  std::vector<double> points, metric;
+  points.reserve(vertices.size() * d);
+  metric.reserve(vertices.size() * d * d);
+  for (const Vertex<d> &v : vertices) {
+    points.insert(points.end(), v.x.data(), v.x.data() + d);
     for (std::size_t i = 0; i < d; ++i)
       for (std::size_t j = 0; j < d; ++j)
-        out.push_back(M(i, j));
+        metric.push_back(v.M(i, j));
+  }
+  result["points"] = owned(std::move(points), {vertices.size(), d});
+  result["metric"] = owned(std::move(metric), {vertices.size(), d, d});
+}
+
+[[nodiscard]] nb::dict as_dict(const Statistics &statistics) {
+  const std::span bins(Statistics::length_bins);
+  nb::dict out;
+  out["edges"] = statistics.n_edges;
+  out["edge_unit"] = statistics.unit_fraction;
+  out["edge_min"] = statistics.length_min;
+  out["edge_mean"] = statistics.length_mean;
+  out["edge_max"] = statistics.length_max;
+  out["edge_bins"] = std::vector<double>(bins.begin(), bins.end());
+  out["edge_histogram"] = statistics.length_histogram;
+  out["q_min"] = statistics.quality_min;
+  out["q_mean"] = statistics.quality_mean;
+  out["q_histogram"] = statistics.quality_histogram;
   return out;
-}
-
-template <class T, std::size_t width, class Row>
-[[nodiscard]] auto rows(const std::vector<Row> &values) {
-  static_assert(sizeof(Row) == width * sizeof(T));
-  const T *data = reinterpret_cast<const T *>(values.data());
-  return owned(std::vector<T>(data, data + values.size() * width),
-               {values.size(), width});
-}
-
-[[nodiscard]] std::span<const Index> indices_of(const Array1<Index> &array) {
-  return {array.data(), array.shape(0)};
 }
 
 /// Tells Python about progress and lets it interrupt: Ctrl-C, or an exception in the
@@ -92,7 +85,6 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
                                indices_of(frozen_tags),
                                ridge_angle};
   RemeshSettings settings;
-  settings.ridge_angle = ridge_angle;
   settings.hausdorff_number = hausdorff_number;
   settings.max_vertices = max_vertices;
   settings.max_seconds = max_seconds;
@@ -103,14 +95,13 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
     const Background<2> background(points_of<2>(points), cells_of<2>(cells), tensors);
     out = remesh(background, geometry, projection, settings, progress_of(callback));
   }
-  const std::size_t n = out.points.size();
   nb::dict result;
-  result["points"] = rows<double, 2>(out.points);
+  put_vertices<2>(result, out.vertices);
   result["cells"] = rows<Index, 3>(out.cells);
   result["cell_tags"] = owned(std::move(out.cell_tags), {out.cells.size()});
   result["facets"] = rows<Index, 2>(out.facets);
   result["facet_tags"] = owned(std::move(out.facet_tags), {out.facets.size()});
-  result["metric"] = owned(full_tensors<2>(out.metric), {n, 2, 2});
+  result["statistics"] = as_dict(out.statistics);
   result["counts"] = out.counts;
   result["seconds"] = out.seconds;
   result["stop_reason"] = name_of(out.reason);
