@@ -16,7 +16,8 @@ struct Round {
 };
 constexpr Round schedule[] = {{3, 0, .68, 1.45}, {3, 0, .70, 1.42}, {2, 2, 0, 0}};
 
-/// Cells below this quality are repaired one by one.
+/// Outliers of the last sweeps: edges beyond these, cells below this quality.
+constexpr double shortest_outlier = .5, longest_outlier = 1.55;
 constexpr double repair_floor = .5;
 
 class Stopwatch {
@@ -44,18 +45,21 @@ private:
 
 void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor,
            std::map<std::string, double> &counts) {
+  const auto control = [&](double shortest, double longest) {
+    const LengthCounts done = control_lengths(w, legaliser, monitor, shortest, longest);
+    counts["splits"] += static_cast<double>(done.splits);
+    counts["collapses"] += static_cast<double>(done.collapses);
+  };
   for (const Round &round : schedule) {
     for (int k = 0; k < round.pliant_sweeps; ++k)
       smooth(w, legaliser, monitor, Target::unit_edges);
     for (int k = 0; k < round.odt_sweeps; ++k)
       smooth(w, legaliser, monitor, Target::odt);
-    if (round.longest > 0) {
-      const LengthCounts done =
-          control_lengths(w, legaliser, monitor, round.shortest, round.longest);
-      counts["splits"] += static_cast<double>(done.splits);
-      counts["collapses"] += static_cast<double>(done.collapses);
-    }
+    if (round.longest > 0)
+      control(round.shortest, round.longest);
   }
+  control(shortest_outlier, longest_outlier);
+  counts["poor"] = static_cast<double>(repair(w, monitor, repair_floor));
 }
 
 void extract(const Workspace &w, RemeshResult &out) {
@@ -103,7 +107,6 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   };
   renumber();
   shape(w, legaliser, monitor, out.counts);
-  const std::size_t poor = repair(w, monitor, repair_floor);
   renumber();
 
   watch.phase("report");
@@ -115,7 +118,6 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   out.counts["rejected"] = static_cast<double>(refined.rejected);
   out.counts["flips"] = static_cast<double>(legaliser.n_flips());
   out.counts["capped"] = static_cast<double>(legaliser.n_capped());
-  out.counts["poor"] = static_cast<double>(poor);
   out.reason = monitor.reason();
   return out;
 }

@@ -27,8 +27,8 @@ struct LengthCounts {
 LengthCounts control_lengths(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                              double shortest, double longest);
 
-/// Raises the worst cells: around every cell below `floor` swaps and moves that raise the
-/// minimum quality, to the end or for a few rounds. @returns the cells below it at last.
+/// Raises the worst cells: around every cell below `floor` swaps, moves, collapses and splits that raise the
+/// minimum quality, for a few rounds. @returns the number of cells below it when the last round met them.
 std::size_t repair(Workspace &w, Monitor &monitor, double floor);
 
 } // namespace anistar
