@@ -25,7 +25,7 @@ Index DelaunayTest::violator(Index cell, const SymmetricTensor<2> &M) {
   const auto cross = [&](Index from, std::size_t i) {
     const auto k = static_cast<std::size_t>(from);
     const HalfFacet beyond = mesh_.neighbours[k][i];
-    if ((mesh_.walls[k] >> i & 1) == 0 && beyond.exists() &&
+    if (mesh_.constraints[k][i] == none && beyond.exists() &&
         stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_)
       front_.push_back(beyond);
   };
@@ -52,16 +52,22 @@ Index DelaunayTest::violator(Index cell, const SymmetricTensor<2> &M) {
   return none;
 }
 
-std::vector<std::uint8_t> delaunay_bits(const CertifiedMesh<2> &mesh, int threads) {
+std::uint8_t DelaunayTest::bits(Index cell) {
+  unsigned found = 0;
+  for (unsigned k = 0; k < 3; ++k) {
+    const Index v = mesh_.cells[static_cast<std::size_t>(cell)][k];
+    if (violator(cell, mesh_.vertices[static_cast<std::size_t>(v)].M) == none)
+      found |= 1u << k;
+  }
+  return static_cast<std::uint8_t>(found);
+}
+
+std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<2> mesh, int threads) {
   std::vector<std::uint8_t> bits(mesh.cells.size(), 0);
   parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end) {
     DelaunayTest test(mesh);
     for (std::size_t c = begin; c < end; ++c)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vertex<2> &v = mesh.vertices[static_cast<std::size_t>(mesh.cells[c][k])];
-        if (test.violator(static_cast<Index>(c), v.M) == none)
-          bits[c] = static_cast<std::uint8_t>(bits[c] | 1u << k);
-      }
+      bits[c] = test.bits(static_cast<Index>(c));
   });
   return bits;
 }

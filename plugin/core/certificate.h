@@ -18,34 +18,40 @@
 
 namespace anistar {
 
+/// The bits of a cell that is Delaunay in the metrics of all its vertices.
+inline constexpr std::uint8_t all_vertices = 7;
+
 /// A mesh as the certificate sees it.
 template <std::size_t d> struct CertifiedMesh {
   std::span<const Vertex<d>> vertices;
   std::span<const Cell<d>> cells;
   std::span<const Neighbours<d>> neighbours;
-  /// Bit i of walls[c]: facet i of cell c is not crossed.
-  std::span<const std::uint8_t> walls;
+  /// Facets whose entry is not `none` are walls and are not crossed.
+  std::span<const std::array<Index, d + 1>> constraints;
 };
 
 /// Decides for one simplex and metric after another; one object to a thread.
 class DelaunayTest {
 public:
-  explicit DelaunayTest(const CertifiedMesh<2> &mesh)
+  explicit DelaunayTest(CertifiedMesh<2> mesh)
       : mesh_(mesh), stamp_(mesh.cells.size(), 0) {}
 
   /// The first vertex found inside the M-circumball of `cell` that it can reach, `none`
   /// when it is Delaunay.
   [[nodiscard]] Index violator(Index cell, const SymmetricTensor<2> &M);
 
+  /// Bit k: the cell is Delaunay in the metric of its vertex k.
+  [[nodiscard]] std::uint8_t bits(Index cell);
+
 private:
-  const CertifiedMesh<2> &mesh_;
+  CertifiedMesh<2> mesh_;
   std::vector<std::uint32_t> stamp_;
   std::uint32_t epoch_ = 0;
   std::vector<HalfFacet> front_;
 };
 
 /// Bit k of result[c]: cell c is Delaunay in the metric of its vertex k.
-[[nodiscard]] std::vector<std::uint8_t> delaunay_bits(const CertifiedMesh<2> &mesh,
+[[nodiscard]] std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<2> mesh,
                                                       int threads);
 
 } // namespace anistar

@@ -39,7 +39,7 @@ public:
             std::span<const Facet<2>> facets, int threads)
       : vertices_(vertices), cells_(cells), threads_(threads),
         neighbours_(adjacency<2>(cells, vertices.size())),
-        walls_(wall_bits(cells, facets, vertices.size())) {}
+        walls_(walls(cells, facets, vertices.size())) {}
 
   CertificateResult run() {
     CertificateResult out;
@@ -47,7 +47,7 @@ public:
     out.star_ok = stars(out.delaunay);
     out.simplex_ok.resize(cells_.size());
     for (std::size_t c = 0; c < cells_.size(); ++c)
-      out.simplex_ok[c] = out.delaunay[c] == all_three;
+      out.simplex_ok[c] = out.delaunay[c] == all_vertices;
     measure_shapes(out);
     find_exempt(out);
     out.stars_without_interfaces = without_interfaces(out.star_ok);
@@ -56,18 +56,17 @@ public:
   }
 
 private:
-  static constexpr std::uint8_t all_three = 7;
   std::span<const Vertex<2>> vertices_;
   std::span<const Cell<2>> cells_;
   int threads_;
   std::vector<Neighbours<2>> neighbours_;
-  std::vector<std::uint8_t> walls_;
+  std::vector<std::array<Index, 3>> walls_;
 
   [[nodiscard]] const Vertex<2> &vertex(Index v) const {
     return vertices_[static_cast<std::size_t>(v)];
   }
   [[nodiscard]] bool is_wall(Index c, std::size_t i) const {
-    return walls_[static_cast<std::size_t>(c)] >> i & 1;
+    return walls_[static_cast<std::size_t>(c)][i] != none;
   }
 
   [[nodiscard]] std::vector<std::uint8_t>
@@ -149,12 +148,12 @@ private:
 
   [[nodiscard]] std::size_t
   without_interfaces(const std::vector<std::uint8_t> &star_ok) const {
-    std::vector<std::uint8_t> boundary = walls_;
+    std::vector<std::array<Index, 3>> boundary = walls_;
     bool has_interface = false;
     for (std::size_t c = 0; c < cells_.size(); ++c)
       for (std::size_t i = 0; i < 3; ++i)
         if (is_wall(static_cast<Index>(c), i) && neighbours_[c][i].exists()) {
-          boundary[c] = static_cast<std::uint8_t>(boundary[c] & ~(1u << i));
+          boundary[c][i] = none;
           has_interface = true;
         }
     const auto count = [](const std::vector<std::uint8_t> &ok) {
@@ -192,8 +191,8 @@ private:
       const bool ok = (out.delaunay[c] & counts) == counts;
       out.restricted_v2 += counts != 0;
       out.restricted_v2_ok += counts != 0 && ok;
-      out.restricted_v1 += counts == all_three;
-      out.restricted_v1_ok += counts == all_three && ok;
+      out.restricted_v1 += counts == all_vertices;
+      out.restricted_v1_ok += counts == all_vertices && ok;
     }
   }
 
@@ -221,9 +220,9 @@ private:
 
 } // namespace
 
-std::vector<std::uint8_t> wall_bits(std::span<const Cell<2>> cells,
-                                    std::span<const Facet<2>> facets,
-                                    std::size_t n_points) {
+std::vector<std::array<Index, 3>> walls(std::span<const Cell<2>> cells,
+                                        std::span<const Facet<2>> facets,
+                                        std::size_t n_points) {
   std::vector<bool> on_facet(n_points, false);
   std::set<std::pair<Index, Index>> known;
   for (const Facet<2> &f : facets) {
@@ -231,15 +230,15 @@ std::vector<std::uint8_t> wall_bits(std::span<const Cell<2>> cells,
     on_facet[static_cast<std::size_t>(f[0])] = true;
     on_facet[static_cast<std::size_t>(f[1])] = true;
   }
-  std::vector<std::uint8_t> walls(cells.size(), 0);
+  std::vector<std::array<Index, 3>> out(cells.size(), {none, none, none});
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [a, b] = facet_of<2>(cells[c], i);
       if (on_facet[static_cast<std::size_t>(a)] &&
           on_facet[static_cast<std::size_t>(b)] && known.contains(std::minmax(a, b)))
-        walls[c] = static_cast<std::uint8_t>(walls[c] | 1u << i);
+        out[c][i] = 0;
     }
-  return walls;
+  return out;
 }
 
 double distortion(const SymmetricTensor<2> &M, const SymmetricTensor<2> &N) {

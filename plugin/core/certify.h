@@ -27,10 +27,10 @@ struct CertificateResult {
                                         std::span<const Cell<2>> cells,
                                         std::span<const Facet<2>> facets, int threads);
 
-/// Bit i of walls[c]: facet i of cell c is one of `facets`.
-[[nodiscard]] std::vector<std::uint8_t> wall_bits(std::span<const Cell<2>> cells,
-                                                  std::span<const Facet<2>> facets,
-                                                  std::size_t n_points);
+/// For every facet of every cell 0 when it is one of `facets`, else `none`.
+[[nodiscard]] std::vector<std::array<Index, 3>> walls(std::span<const Cell<2>> cells,
+                                                      std::span<const Facet<2>> facets,
+                                                      std::size_t n_points);
 
 /// gamma(M, N) = max(|F_M^-1 F_N|, |F_N^-1 F_M|), the distortion between two metrics
 /// (RR-7712 v2, section 2).

@@ -10,7 +10,7 @@ nb::dict certify2(const Array2<double> &points, const Array2<Index> &cells,
                   int threads) {
   const auto x = points_of<2>(points);
   const auto simplices = cells_of<2>(cells);
-  const auto walls = facets_of<2>(facets);
+  const auto constrained = facets_of<2>(facets);
   const auto tensors = tensors_of<2>(metric);
   if (tensors.size() != x.size())
     throw std::invalid_argument("points and metric differ in length");
@@ -21,7 +21,7 @@ nb::dict certify2(const Array2<double> &points, const Array2<Index> &cells,
     vertices.reserve(x.size());
     for (std::size_t v = 0; v < x.size(); ++v)
       vertices.push_back(make_vertex<2>(x[v], tensors[v]));
-    out = certify(vertices, simplices, walls, threads);
+    out = certify(vertices, simplices, constrained, threads);
   }
   const std::size_t n = x.size(), m = simplices.size();
   nb::dict result;
@@ -50,9 +50,8 @@ Index delaunay_violator2(const Array2<double> &points, const Array2<Index> &cell
   for (const Vector<2> &p : x)
     vertices.push_back(make_vertex<2>(p, M));
   const auto neighbours = adjacency<2>(simplices, x.size());
-  const auto walls = wall_bits(simplices, facets_of<2>(facets), x.size());
-  const CertifiedMesh<2> mesh{vertices, simplices, neighbours, walls};
-  return DelaunayTest(mesh).violator(cell, M);
+  const auto constraints = walls(simplices, facets_of<2>(facets), x.size());
+  return DelaunayTest({vertices, simplices, neighbours, constraints}).violator(cell, M);
 }
 
 int in_metric_circle(const Array2<double> &metric, const Array2<double> &triangle,
