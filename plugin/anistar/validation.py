@@ -34,6 +34,10 @@ if TYPE_CHECKING:
 ROUND_OFF = 16 * np.finfo(np.float64).eps
 
 
+# The checks multiply up to four lengths, which must stay below the largest double.
+LARGEST = 1e75
+
+
 @dataclass(frozen=True)
 class Violation:
     """One broken rule.
@@ -124,14 +128,23 @@ def _index_violation(name: str, rows: Int, n_points: int) -> Iterator[Violation]
         )
 
 
+def point_violations(points: Float) -> Iterator[Violation]:
+    """Yield the points whose coordinates cannot be computed with."""
+    non_finite = ~np.isfinite(points).all(axis=1)
+    yield from _violation("non_finite", non_finite, "point {i} has a non-finite coordinate")
+    huge = (np.abs(points) > LARGEST).any(axis=1) & ~non_finite
+    text = f"point {{i}} has a coordinate beyond {LARGEST:g} in magnitude"
+    yield from _violation("non_finite", huge, text)
+
+
 def cell_violations(points: Float, cells: Int) -> Iterator[Violation]:
     """Yield what is wrong with points and cells taken one by one."""
     if len(cells) == 0:
         yield Violation("empty", "the mesh is empty: it has no cells")
         return
-    non_finite = ~np.isfinite(points).all(axis=1)
-    if non_finite.any():
-        yield from _violation("non_finite", non_finite, "point {i} has a non-finite coordinate")
+    bad_points = list(point_violations(points))
+    if bad_points:
+        yield from bad_points
         return
     bad_index = list(_index_violation("cell", cells, len(points)))
     if bad_index:

@@ -77,6 +77,13 @@ def test_a_nan_coordinate_is_named():
         Mesh(**broken(points=points))
 
 
+def test_a_coordinate_too_large_to_compute_with_is_named():
+    points = square(2).points.copy()
+    points[5, 1] = 1e200
+    with pytest.raises(ValueError, match=r"point 5 has a coordinate beyond 1e\+75"):
+        Mesh(**broken(points=points))
+
+
 @pytest.mark.parametrize("bad", [-1, 9])
 def test_an_index_out_of_range_is_named(bad):
     cells = square(2).cells.copy()
