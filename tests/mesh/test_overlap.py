@@ -105,6 +105,16 @@ def test_three_cells_on_one_facet_are_refused():
         Mesh(points=points, cells=[[0, 1, 2], [1, 0, 3], [0, 1, 4]])
 
 
+def test_two_cells_that_share_a_point_and_cross_are_refused():
+    points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.3, 0.2, 0.9], [0.2, 0.3, -0.9],
+              [3.0, 3.0, 0.1]]  # fmt: skip
+    cells = np.array([[0, 1, 2, 3], [1, 4, 5, 6]])
+    if np.linalg.det(np.array(points)[cells[1, 1:]] - points[1]) < 0:
+        cells[1, 2:] = cells[1, :1:-1]
+    with pytest.raises(ValueError, match=r"cells \d and \d overlap: their boundary facets cross"):
+        Mesh(points=points, cells=cells)
+
+
 def test_a_hanging_point_is_refused():
     points = [[0, 0], [1, 0], [0, 1], [0.5, 0], [0.2, -1], [0.8, -1]]
     cells = [[0, 1, 2], [0, 4, 3], [3, 4, 5], [3, 5, 1]]
