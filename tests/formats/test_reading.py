@@ -30,7 +30,7 @@ RequiredEdges 1
 1
 RequiredVertices
 1
-1
+2
 Normals
 1
 0.0 0.0 1e-3
@@ -55,7 +55,7 @@ def test_a_text_mesh_with_comments_and_unknown_keywords_is_read(tmp_path):
     assert mesh.facet_tags[0] == 7
     assert mesh.edges.tolist() == [[0, 1]]
     assert mesh.edge_tags.tolist() == [9]
-    assert mesh.corners.tolist() == [0, 3]
+    assert mesh.corners.tolist() == [0, 1, 3]
     assert (fields, report.warnings) == ({}, ())
     assert validate(mesh) == []
 
