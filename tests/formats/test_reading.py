@@ -253,6 +253,14 @@ def test_gmsh_4_has_physical_names(tmp_path):
     assert validate(mesh) == []
 
 
+def test_one_name_may_be_used_in_two_dimensions(tmp_path):
+    (tmp_path / "m.msh").write_text(GMSH_4.replace("wall", "air"))
+    mesh, _ = formats.read(tmp_path / "m.msh")
+    assert mesh.names == {(1, 5): "air", (2, 6): "air"}
+    formats.write(tmp_path / "n.msh", mesh)
+    assert formats.read(tmp_path / "n.msh")[0].names == mesh.names
+
+
 def test_gmsh_data_on_some_elements_goes_by_number(tmp_path):
     (tmp_path / "m.msh").write_text(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"

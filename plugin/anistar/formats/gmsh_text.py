@@ -77,7 +77,9 @@ def _read(text: str) -> RawMesh:
     index = _Numbers("node", nodes[:, 0])
     labels = _labels(content.get("Comments", ""))
     blocks, numbers = _elements(parsed(content["Elements"]), index, ours=labels is not None)
-    raw = RawMesh(nodes[:, 1:4].copy(), blocks, names=_names(content.get("PhysicalNames", "")))
+    raw = RawMesh(
+        nodes[:, 1:4].copy(), blocks, names=physical_names(content.get("PhysicalNames", ""))
+    )
     raw.labels = labels or set()
     for name, body in sections:
         if name == "NodeData":
@@ -126,7 +128,8 @@ def _rows(name: str, numbers: Array, width: int) -> Array:
     return np.asarray(numbers[1:].reshape(count, width))
 
 
-def _names(body: str) -> dict[tuple[int, int], str]:
+def physical_names(body: str) -> dict[tuple[int, int], str]:
+    """Return the names in the body of the section PhysicalNames by (dim, tag)."""
     found = re.findall(r'^\s*(\d+)\s+(-?\d+)\s+"(.*)"', body, re.MULTILINE)
     return {(int(dim), int(tag)): name for dim, tag, name in found}
 
