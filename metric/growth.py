@@ -16,8 +16,8 @@ Array = NDArray[np.float64]
 MIXED_WEIGHT = 1.0 / 8.0
 """Weight of the physical growth in the mixed one."""
 
-BAND = 1
-"""A round takes the raised vertices within so many powers of two of the densest one."""
+BAND = 0.25
+"""A round takes the raised vertices whose determinant is at least this share of the largest."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,15 +57,14 @@ def grade(
     vertex.
     """
     sources, M = graph.sources, metric.copy()
-    raised = np.ones(graph.n_points, dtype=bool)
-    density = _density(M)
+    raised = determinant(M)
     rounds = updates = 0
     while raised.any():
         if rounds == max_rounds:
             return Growth(metric=M, rounds=rounds, updates=updates, converged=False)
         rounds += 1
-        front = raised & (density >= density[raised].max() - BAND)
-        raised &= ~front
+        front = raised >= BAND * raised.max()
+        raised[front] = 0.0
         active = np.flatnonzero(front[sources])
         p, q = sources[active], graph.neighbours[active]
         values, vectors = eigh(M[front])
@@ -74,9 +73,8 @@ def grade(
         requests = compose(asked, vectors[at])
         for turn in _turns(q):
             M[q[turn]], changed = intersection(M[q[turn]], requests[turn], tolerance)
-            raised[q[turn][changed]] = True
+            raised[q[turn][changed]] = determinant(M[q[turn][changed]])
             updates += int(changed.sum())
-        density[q] = _density(M[q])
     return Growth(metric=M, rounds=rounds, updates=updates, converged=True)
 
 
@@ -92,11 +90,6 @@ def grown(values: Array, vectors: Array, v: Array, model: str, log_factor: float
         return np.asarray(values / uniform**2)
     mixed = physical**MIXED_WEIGHT * uniform ** (1.0 - MIXED_WEIGHT)
     return np.asarray(values / mixed**2)
-
-
-def _density(M: Array) -> NDArray[np.int32]:
-    """Binary exponents (n,) of the determinants."""
-    return np.frexp(determinant(M))[1]
 
 
 def _turns(q: NDArray[np.int32]) -> list[NDArray[np.intp]]:
