@@ -1,6 +1,7 @@
 #include "gradation.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace anistar {
 namespace {
@@ -47,9 +48,10 @@ public:
             std::span<const std::int32_t> offsets,
             std::span<const std::int32_t> neighbours, const GradationOptions &options)
       : points_(points), offsets_(offsets), neighbours_(neighbours), options_(options),
-        raised_(metric.size()) {
+        raised_(metric.size()), queue_(metric.size()) {
     for (std::size_t v = 0; v < metric.size(); ++v)
       raised_[v] = determinant(metric[v]);
+    std::iota(queue_.begin(), queue_.end(), std::size_t{0});
     result_.metric = std::move(metric);
   }
 
@@ -75,16 +77,19 @@ private:
     front_.clear();
     spectra_.clear();
     double densest = 0;
-    for (const double density : raised_)
-      densest = std::max(densest, density);
-    if (densest == 0)
-      return;
-    for (std::size_t v = 0; v < raised_.size(); ++v)
-      if (raised_[v] >= band * densest) {
+    for (const std::size_t v : queue_)
+      densest = std::max(densest, raised_[v]);
+    std::erase_if(queue_, [&](std::size_t v) {
+      const bool dense = raised_[v] >= band * densest;
+      if (dense)
         front_.push_back(v);
-        spectra_.push_back(spectrum(result_.metric[v]));
-        raised_[v] = 0;
-      }
+      return dense;
+    });
+    std::sort(front_.begin(), front_.end());
+    for (const std::size_t v : front_) {
+      spectra_.push_back(spectrum(result_.metric[v]));
+      raised_[v] = 0;
+    }
   }
 
   void spread() {
@@ -96,6 +101,8 @@ private:
             grown<d>(spectra_[i], points_[q] - points_[p], options_);
         if (raise(result_.metric[q], compose<d>(values, spectra_[i].vectors),
                   options_.tolerance)) {
+          if (raised_[q] == 0)
+            queue_.push_back(q);
           raised_[q] = determinant(result_.metric[q]);
           ++result_.updates;
         }
@@ -107,7 +114,7 @@ private:
   std::span<const std::int32_t> offsets_, neighbours_;
   GradationOptions options_;
   std::vector<double> raised_; // determinants at the raised vertices, else zero
-  std::vector<std::size_t> front_;
+  std::vector<std::size_t> queue_, front_;
   std::vector<Spectrum<d>> spectra_;
   Graded<d> result_;
 };
