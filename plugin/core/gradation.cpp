@@ -6,14 +6,14 @@
 namespace anistar {
 namespace {
 
-/// Weight of the physical growth in the mixed one (Alauzet 2010, 6.2.1).
-constexpr double mixed_weight = 1.0 / 8.0;
-
 /// A round takes the raised vertices whose determinant is at least this share of the
 /// largest one. Dense vertices ask most of the others: to go through them first, as
-/// Dijkstra does, takes 4 to 10 times fewer raises than to take all; a narrow band takes
-/// more rounds. The share is relative, so that the unit of length does not matter.
+/// Dijkstra does, takes 4 to 10 times fewer raises than to take all; a narrow band
+/// takes more rounds. The share is relative, so that the unit of length does not
+/// matter.
 constexpr double band = 0.25;
+
+double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
 /// The eigenvalues of what p asks at the end of the edge `v`.
 template <std::size_t d>
@@ -35,8 +35,7 @@ Vector<d> grown(const Spectrum<d> &at, const Vector<d> &v,
     if (options.model != GrowthModel::Metric)
       growth = 1 + std::sqrt(at.values[k]) * length * options.log_factor;
     if (options.model == GrowthModel::Mixed)
-      growth =
-          std::pow(growth, mixed_weight) * std::pow(metric_growth, 1 - mixed_weight);
+      growth = metric_growth * eighth_root(growth / metric_growth);
     values[k] = at.values[k] / (growth * growth);
   }
   return values;
