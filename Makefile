@@ -3,7 +3,6 @@
 .PHONY: help setup demo test lint types stubs check-stubs format docs sanitize fuzz bench clean
 
 PYTHON := .venv/bin/python
-OUTPUT ?= anistar-demo
 PYTEST_ARGS ?= -n auto --dist loadfile
 CXX_SOURCES = $(shell find plugin/core -name '*.cpp' -o -name '*.h')
 PYTHON_PATHS := metric plugin tests $(wildcard solver_examples) docs
@@ -16,7 +15,7 @@ setup: ## Install what is missing and build the package into .venv
 	@./bootstrap.sh
 
 demo: setup ## Adapt a channel flow and leave pictures, meshes and a report in anistar-demo/
-	@.venv/bin/anistar demo --output $(OUTPUT)
+	@.venv/bin/anistar demo
 
 test: setup ## Run the tests
 	@$(PYTHON) -m pytest $(PYTEST_ARGS)
