@@ -1,0 +1,120 @@
+"""Fields: arrays that live on the points or the cells of a mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from .mesh import Mesh
+
+Location = Literal["points", "cells"]
+Kind = Literal["scalar", "vector", "tensor", "label"]
+
+_RANK = {"scalar": 1, "label": 1, "vector": 2, "tensor": 3}
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """Values at the points or in the cells of a mesh.
+
+    Parameters
+    ----------
+    values : (n,), (n, d) or (n, d, d) array
+        One row for each point or cell; integers make a label, booleans become integers.
+    on : {"points", "cells"}
+        Where the values live.
+    kind : {"scalar", "vector", "tensor", "label"}, optional
+        Deduced from shape and dtype when not given. A label is never interpolated.
+
+    Raises
+    ------
+    TypeError
+        If the values are not real numbers.
+    ValueError
+        If `on` or `kind` is unknown, or the shape does not fit the kind.
+    """
+
+    values: NDArray[Any]
+    on: Location = "points"
+    kind: Kind | None = None
+
+    def __post_init__(self) -> None:
+        values = np.asarray(self.values)
+        if values.dtype.kind not in "biuf":
+            raise TypeError(f"field values must be real numbers, not {values.dtype}")
+        if self.on not in ("points", "cells"):
+            raise ValueError(f"field location must be 'points' or 'cells', not {self.on!r}")
+        kind = self.kind if self.kind is not None else _deduced_kind(values)
+        if kind not in _RANK:
+            raise ValueError(f"field kind must be one of {sorted(_RANK)}, not {kind!r}")
+        if values.ndim != _RANK[kind]:
+            raise ValueError(
+                f"a {kind} field needs an array of {_RANK[kind]} dimension(s), "
+                f"not shape {values.shape}"
+            )
+        if kind == "label" and values.dtype.kind == "f":
+            raise TypeError(f"a label field needs integers, not {values.dtype}")
+        dtype = np.int64 if kind == "label" else np.float64
+        object.__setattr__(self, "values", np.ascontiguousarray(values, dtype=dtype))
+        object.__setattr__(self, "kind", kind)
+
+
+def _deduced_kind(values: NDArray[Any]) -> Kind:
+    ranks: dict[int, Kind] = {1: "scalar", 2: "vector", 3: "tensor"}
+    if values.ndim not in ranks:
+        raise ValueError(f"field values must be (n,), (n, d) or (n, d, d), not {values.shape}")
+    if values.ndim == 1 and values.dtype.kind in "biu":
+        return "label"
+    return ranks[values.ndim]
+
+
+def as_fields(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None) -> dict[str, Field]:
+    """Return the fields as checked `Field` objects; a bare array means points.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh that carries the fields.
+    fields : mapping of str to Field or array, optional
+        None means no field.
+
+    Returns
+    -------
+    dict of str to Field
+
+    Raises
+    ------
+    TypeError
+        If a name is not a string, or values are not real numbers.
+    ValueError
+        If a field has the wrong length or number of components; the message names the field.
+    """
+    checked: dict[str, Field] = {}
+    for name, given in (fields or {}).items():
+        if not isinstance(name, str):
+            raise TypeError(f"field names must be strings, not {name!r}")
+        try:
+            field = given if isinstance(given, Field) else Field(np.asarray(given))
+        except (TypeError, ValueError) as error:
+            raise type(error)(f"field {name!r}: {error}") from error
+        _check_shape(name, field, mesh)
+        checked[name] = field
+    return checked
+
+
+def _check_shape(name: str, field: Field, mesh: Mesh) -> None:
+    expected = mesh.n_points if field.on == "points" else mesh.n_cells
+    if len(field.values) != expected:
+        raise ValueError(
+            f"field {name!r} has {len(field.values)} values, the mesh has {expected} {field.on}"
+        )
+    if field.values.ndim > 1 and any(size != mesh.dim for size in field.values.shape[1:]):
+        raise ValueError(
+            f"field {name!r} of kind {field.kind} has shape {field.values.shape}, "
+            f"the mesh has dimension {mesh.dim}"
+        )

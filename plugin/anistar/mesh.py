@@ -1,0 +1,258 @@
+"""The mesh: immutable arrays of simplices, tags and names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import validation
+from .topology import FacetTable, Float, Int, facet_table
+
+# Optional arrays are never None once constructed, so the fields keep their array types.
+_NOT_GIVEN: Any = None
+
+_UNSUPPORTED = {
+    (2, 4): "quadrilaterals are not supported: split them into triangles",
+    (2, 6): "quadratic triangles (P2 geometry) are not supported: give the three corners",
+    (3, 8): "hexahedra are not supported: split them into tetrahedra",
+    (3, 6): "prisms and surface meshes in 3D are not supported",
+    (3, 5): "pyramids are not supported: split them into tetrahedra",
+    (3, 10): "quadratic tetrahedra (P2 geometry) are not supported: give the four corners",
+    (3, 3): "surface meshes in 3D are not supported; for a planar mesh give points[:, :2]",
+}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Mesh:
+    """A conforming simplicial mesh of a 2D or 3D domain, with tags and names.
+
+    The constructor converts what can be converted without loss, checks everything that
+    `anistar.validate` checks, and adds the facets on the boundary and between regions that were
+    not given, with tag 0. Boundary facets are turned outward (2D: the domain lies on the left of
+    ``a -> b``). All arrays are copies and read-only.
+
+    Parameters
+    ----------
+    points : (n, d) float array
+        Coordinates, d = 2 or 3.
+    cells : (m, d + 1) int array
+        Positively oriented triangles or tetrahedra.
+    cell_tags : (m,) int array, optional
+        Region of each cell, 0 by default.
+    facets : (k, d) int array, optional
+        Boundary and internal facets that carry a tag. An internal facet between cells of the
+        same region is a slit.
+    facet_tags : (k,) int array, optional
+        Tags of the facets, 0 by default.
+    edges : (e, 2) int array, optional
+        Ridges, in 3D only.
+    edge_tags : (e,) int array, optional
+        Tags of the ridges, 0 by default.
+    corners : (c,) int array, optional
+        Points that a remesher must keep.
+    names : mapping of (dim, tag) to str, optional
+        Names of tags; `dim` is that of the tagged entities.
+
+    Raises
+    ------
+    TypeError
+        If an array cannot be converted without loss, or cells have mixed types.
+    ValueError
+        If the mesh is not valid; the message names the culprit.
+    """
+
+    points: Float
+    cells: Int
+    cell_tags: Int = _NOT_GIVEN
+    facets: Int = _NOT_GIVEN
+    facet_tags: Int = _NOT_GIVEN
+    edges: Int = _NOT_GIVEN
+    edge_tags: Int = _NOT_GIVEN
+    corners: Int = _NOT_GIVEN
+    names: dict[tuple[int, int], str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        points = _as_points(self.points)
+        cells = _as_cells(self.cells, points.shape[1])
+        arrays = _constraints(self, points.shape[1], len(cells))
+        _raise_first(validation.cell_violations(points, cells))
+        table = facet_table(cells, len(points))
+        _raise_first(validation.side_violations(points, cells, table))
+        given: dict[str, Any] = {"points": points, "cells": cells, **arrays}
+        _raise_first(
+            validation.constraint_violations(
+                points, cells, arrays["facets"], arrays["edges"], arrays["corners"], table
+            )
+        )
+        _complete_facets(given, table)
+        self._store(given, _as_names(self.names, points.shape[1]))
+
+    @classmethod
+    def _trusted(cls, **arrays: Any) -> Mesh:
+        """Return a mesh of arrays that are known to be valid: nothing is checked or completed."""
+        mesh = object.__new__(cls)
+        names = arrays.pop("names", {})
+        dim, n_cells = arrays["points"].shape[1], len(arrays["cells"])
+        n_facets = len(arrays["facets"]) if "facets" in arrays else 0
+        n_edges = len(arrays["edges"]) if "edges" in arrays else 0
+        defaults = {
+            "cell_tags": np.zeros(n_cells, np.int32),
+            "facets": np.zeros((0, dim), np.int32),
+            "facet_tags": np.zeros(n_facets, np.int32),
+            "edges": np.zeros((0, 2), np.int32),
+            "edge_tags": np.zeros(n_edges, np.int32),
+            "corners": np.zeros(0, np.int32),
+        }
+        mesh._store({**defaults, **arrays}, dict(names))
+        return mesh
+
+    def _store(self, arrays: Mapping[str, NDArray[Any]], names: dict[tuple[int, int], str]) -> None:
+        for name, array in arrays.items():
+            view = array.view()
+            view.flags.writeable = False
+            object.__setattr__(self, name, view)
+        object.__setattr__(self, "names", names)
+
+    @property
+    def dim(self) -> int:
+        """Dimension of the domain, 2 or 3."""
+        return int(self.points.shape[1])
+
+    @property
+    def n_points(self) -> int:
+        """Number of points."""
+        return len(self.points)
+
+    @property
+    def n_cells(self) -> int:
+        """Number of cells."""
+        return len(self.cells)
+
+    @property
+    def n_facets(self) -> int:
+        """Number of boundary and internal facets that are stored."""
+        return len(self.facets)
+
+    def arrays(self) -> dict[str, Any]:
+        """Return the arrays and names by field name, as the constructor takes them."""
+        return {item.name: getattr(self, item.name) for item in fields(self)}
+
+    def __repr__(self) -> str:
+        return (
+            f"Mesh(dim={self.dim}, n_points={self.n_points}, n_cells={self.n_cells}, "
+            f"n_facets={self.n_facets}, names={sorted(self.names.values())})"
+        )
+
+
+def _raise_first(violations: Iterable[validation.Violation]) -> None:
+    for violation in violations:
+        raise ValueError(violation.message)
+
+
+def _as_points(given: ArrayLike) -> Float:
+    points = np.asarray(given)
+    if points.dtype.kind not in "biuf":
+        raise TypeError(f"points must be real numbers, not {points.dtype}")
+    if points.ndim != 2 or (points.size and points.shape[1] not in (2, 3)):
+        raise ValueError(f"points must have shape (n, 2) or (n, 3), not {points.shape}")
+    if len(points) == 0:
+        raise ValueError("the mesh is empty: it has no points")
+    return np.array(points, dtype=np.float64, order="C")
+
+
+def _as_cells(given: ArrayLike, dim: int) -> Int:
+    try:
+        cells = np.asarray(given)
+    except ValueError as error:
+        raise TypeError("cells of mixed types: every cell must be of one type") from error
+    if cells.dtype == object:
+        raise TypeError("cells of mixed types: every cell must be of one type")
+    if len(np.atleast_1d(cells)) == 0:
+        raise ValueError("the mesh is empty: it has no cells")
+    if cells.ndim != 2:
+        raise ValueError(f"cells must have shape (m, {dim + 1}), not {cells.shape}")
+    if cells.shape[1] != dim + 1:
+        reason = _UNSUPPORTED.get((dim, cells.shape[1]), "only triangles and tetrahedra are")
+        raise ValueError(
+            f"cells must have shape (m, {dim + 1}) for {dim}D points, not {cells.shape}: {reason}"
+        )
+    return as_int32(cells, "cells")
+
+
+def as_int32(given: ArrayLike, name: str) -> Int:
+    """Return a new int32 array; raise and name the entry that would lose information."""
+    array = np.asarray(given)
+    if array.dtype.kind not in "biuf":
+        raise TypeError(f"{name} must be integers, not {array.dtype}")
+    with np.errstate(invalid="ignore"):
+        result = np.array(array, dtype=np.int32, order="C")
+    changed = result != array
+    if changed.any():
+        at = np.unravel_index(int(np.argmax(changed)), array.shape)
+        where = ", ".join(str(int(i)) for i in at)
+        raise TypeError(f"{name}[{where}] = {array[at]} is not a 32-bit integer")
+    return result
+
+
+def _constraints(mesh: Mesh, dim: int, n_cells: int) -> dict[str, Int]:
+    """Return tags, facets, edges and corners with defaults filled in and shapes checked."""
+    facets = _rows(mesh.facets, "facets", dim)
+    edges = _rows(mesh.edges, "edges", 2)
+    if dim == 2 and len(edges):
+        raise ValueError("edges are the ridges of a 3D mesh; in 2D give facets")
+    corners = as_int32([] if mesh.corners is None else mesh.corners, "corners")
+    if corners.ndim != 1:
+        raise ValueError(f"corners must have shape (c,), not {corners.shape}")
+    return {
+        "cell_tags": _tags(mesh.cell_tags, "cell_tags", n_cells),
+        "facets": facets,
+        "facet_tags": _tags(mesh.facet_tags, "facet_tags", len(facets)),
+        "edges": edges,
+        "edge_tags": _tags(mesh.edge_tags, "edge_tags", len(edges)),
+        "corners": corners,
+    }
+
+
+def _rows(given: ArrayLike | None, name: str, width: int) -> Int:
+    rows = np.zeros((0, width), np.int32) if given is None else as_int32(given, name)
+    if rows.size == 0:
+        rows = rows.reshape(0, width)
+    if rows.ndim != 2 or rows.shape[1] != width:
+        raise ValueError(f"{name} must have shape (k, {width}), not {rows.shape}")
+    return rows
+
+
+def _tags(given: ArrayLike | None, name: str, length: int) -> Int:
+    tags = np.zeros(length, np.int32) if given is None else as_int32(given, name)
+    if tags.shape != (length,):
+        raise ValueError(f"{name} must have shape ({length},), not {tags.shape}")
+    return tags
+
+
+def _complete_facets(arrays: dict[str, Any], table: FacetTable) -> None:
+    """Turn boundary facets outward and add the missing facets, with tag 0."""
+    rows = table.find(arrays["facets"])
+    boundary = table.counts[rows] == 1
+    arrays["facets"][boundary] = table.facets[rows[boundary]]
+    needed = validation.needs_facet(arrays["cell_tags"], table)
+    needed[rows] = False
+    missing = table.facets[needed]
+    arrays["facets"] = np.concatenate([arrays["facets"], missing])
+    arrays["facet_tags"] = np.r_[arrays["facet_tags"], np.zeros(len(missing), np.int32)]
+
+
+def _as_names(given: Mapping[tuple[int, int], str], dim: int) -> dict[tuple[int, int], str]:
+    names: dict[tuple[int, int], str] = {}
+    for key, name in given.items():
+        if not (isinstance(key, tuple) and len(key) == 2):
+            raise TypeError(f"names must have keys (dim, tag), not {key!r}")
+        if not isinstance(name, str):
+            raise TypeError(f"the name of {key} must be a string, not {name!r}")
+        if not 0 <= key[0] <= dim:
+            raise ValueError(f"names has dimension {key[0]} in {key}, the mesh has {dim}")
+        names[int(key[0]), int(key[1])] = name
+    return names
