@@ -1,1 +1,47 @@
-"""Metric fields: which mesh do we want?"""
+"""Metric fields: which mesh do we want?
+
+A metric is an array (n, d, d) of symmetric positive definite tensors at the points of a mesh,
+in 1 / length**2: an edge v should satisfy ``v^T M v = 1``.
+"""
+
+from .algebra import absolute, exp_metric, interpolated, log_metric, sqrt_metric
+from .bounds import bounded
+from .checks import MetricError, check_metric
+from .combination import intersected, mean
+from .complexity import ELEMENTS_PER_COMPLEXITY, complexity
+from .distortion import distortion
+from .gradation import graded
+from .graph import mesh_edges
+from .ledger import Ledger, Stage
+from .mesh import MeshLike
+from .normalisation import normalised
+from .options import MetricOptions
+from .pipeline import from_fields
+from .recovery import recover_hessian
+from .sizes import from_sizes
+
+__all__ = [
+    "ELEMENTS_PER_COMPLEXITY",
+    "Ledger",
+    "MeshLike",
+    "MetricError",
+    "MetricOptions",
+    "Stage",
+    "absolute",
+    "bounded",
+    "check_metric",
+    "complexity",
+    "distortion",
+    "exp_metric",
+    "from_fields",
+    "from_sizes",
+    "graded",
+    "interpolated",
+    "intersected",
+    "log_metric",
+    "mean",
+    "mesh_edges",
+    "normalised",
+    "recover_hessian",
+    "sqrt_metric",
+]

@@ -2,6 +2,7 @@
 // Small vectors and symmetric tensors of dimension d: the algebra of metrics.
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -169,6 +170,74 @@ template <std::size_t d>
 template <std::size_t d>
 [[nodiscard]] inline SymmetricTensor<d> exp(const SymmetricTensor<d> &L) {
   return matrix_function(L, [](double x) { return std::exp(x); });
+}
+
+/// The lower triangular L with L L^T = M.
+/// @pre M is positive definite.
+template <std::size_t d>
+[[nodiscard]] inline Matrix<d> lower_factor(const SymmetricTensor<d> &M) {
+  Matrix<d> L = Matrix<d>::Zero();
+  for (int i = 0; i < static_cast<int>(d); ++i)
+    for (int j = 0; j <= i; ++j) {
+      double rest = M(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+      for (int k = 0; k < j; ++k)
+        rest -= L(i, k) * L(j, k);
+      L(i, j) = i == j ? std::sqrt(rest) : rest / L(j, j);
+    }
+  return L;
+}
+
+/// L^-1 T L^-T for lower triangular L.
+template <std::size_t d>
+[[nodiscard]] inline SymmetricTensor<d> congruent(const Matrix<d> &L,
+                                                  const SymmetricTensor<d> &T) {
+  constexpr int n = static_cast<int>(d);
+  Matrix<d> X = as_matrix(T);
+  for (int i = 0; i < n; ++i) { // X = L^-1 T
+    for (int j = 0; j < i; ++j)
+      X.row(i) -= L(i, j) * X.row(j);
+    X.row(i) /= L(i, i);
+  }
+  for (int i = 0; i < n; ++i) { // X = X L^-T
+    for (int j = 0; j < i; ++j)
+      X.col(i) -= L(i, j) * X.col(j);
+    X.col(i) /= L(i, i);
+  }
+  return as_tensor<d>(X);
+}
+
+/// Whether bound * I - S is positive definite, by its leading minors.
+template <std::size_t d>
+[[nodiscard]] inline bool is_below(const SymmetricTensor<d> &S, double bound) {
+  SymmetricTensor<d> D = -1.0 * S;
+  for (std::size_t i = 0; i < d; ++i)
+    D(i, i) += bound;
+  if (!(D(0, 0) > 0) || !(D(0, 0) * D(1, 1) - D(0, 1) * D(0, 1) > 0))
+    return false;
+  if constexpr (d == 2)
+    return true;
+  else
+    return determinant(D) > 0;
+}
+
+/// Replaces M by its intersection with N (simultaneous reduction: the larger value on each
+/// axis of their common basis) where N exceeds M by a factor of 1 + `tolerance` somewhere;
+/// returns whether it did. What is added is semidefinite: M never gets coarser.
+/// @pre M and N are positive definite.
+template <std::size_t d>
+inline bool raise(SymmetricTensor<d> &M, const SymmetricTensor<d> &N,
+                  double tolerance) {
+  const Matrix<d> L = lower_factor(M);
+  const SymmetricTensor<d> S = congruent<d>(L, N);
+  if (is_below(S, 1 + tolerance))
+    return false;
+  Spectrum<d> s = spectrum(S);
+  if (!(s.values[static_cast<int>(d) - 1] > 1 + tolerance))
+    return false;
+  for (int k = 0; k < static_cast<int>(d); ++k)
+    s.values[k] = std::max(s.values[k] - 1, 0.0);
+  M += compose<d>(s.values, L * s.vectors);
+  return true;
 }
 
 } // namespace anistar

@@ -1,0 +1,63 @@
+"""Distortion: how much the metrics at the two ends of an edge disagree."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .algebra import congruent, eigenvalues, lower_factor
+from .checks import check_metric
+from .graph import mesh_edges
+from .mesh import MeshLike
+
+Array = NDArray[np.float64]
+
+
+def distortion(mesh: MeshLike, M: Array) -> Array:
+    """Logarithm of the distortion of `M` over one unit of metric length, for each edge.
+
+    The distortion of two metrics is the largest ratio by which they see the length of one
+    vector differently [1]_, ``gamma = max(|F_M^-1 F_N|, |F_N^-1 F_M|)``. ``ln gamma`` of an edge is
+    divided by its length in the metric, so that the value does not depend on the mesh that
+    carries the metric: on a unit mesh it is what neighbouring stars have to agree about.
+
+    Parameters
+    ----------
+    mesh : MeshLike
+        The mesh that carries the metric.
+    M : ndarray (n, d, d)
+        Metric at the points, in 1 / length**2.
+
+    Returns
+    -------
+    ndarray (e,)
+        One value per edge of `anistar.metric.mesh_edges(mesh)`.
+
+    Raises
+    ------
+    MetricError
+        If `M` is no metric on the points of `mesh`.
+
+    References
+    ----------
+    .. [1] Boissonnat, Wormser, Yvinec, Anisotropic Delaunay mesh generation, SIAM Journal on
+       Computing 44, 2015, section 2.
+    """
+    n, d = mesh.points.shape
+    M = check_metric(M, n_points=n, dim=d)
+    p, q = mesh_edges(mesh).T
+    ratio = eigenvalues(congruent(lower_factor(M[p]), M[q]))
+    gamma = 0.5 * np.maximum(np.log(ratio[:, -1]), -np.log(ratio[:, 0]))
+    return np.asarray(gamma / edge_lengths(mesh.points[q] - mesh.points[p], M[p], M[q]))
+
+
+def edge_lengths(v: Array, start: Array, end: Array) -> Array:
+    """Metric lengths (e,) of edges `v` with the metrics at their ends, for a geometric law.
+
+    ``(a - b) / ln(a / b)``, a and b the lengths in the two metrics.
+    """
+    a = np.sqrt(np.einsum("ei,eij,ej->e", v, start, v))
+    b = np.sqrt(np.einsum("ei,eij,ej->e", v, end, v))
+    ratio = np.log(a / b)
+    near = np.abs(ratio) < 1e-6
+    return np.where(near, 0.5 * (a + b), (a - b) / np.where(near, 1.0, ratio))

@@ -1,0 +1,46 @@
+"""The compiled kernels, or their NumPy counterparts where the core is not built."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import growth
+from .graph import VertexGraph
+from .growth import Growth
+
+Array = NDArray[np.float64]
+
+core: Any
+try:
+    from .. import _core as core
+except ImportError:  # the package is used by itself
+    core = None
+
+
+def grade(
+    points: Array,
+    metric: Array,
+    graph: VertexGraph,
+    *,
+    model: str,
+    log_factor: float,
+    tolerance: float,
+    max_rounds: int,
+) -> Growth:
+    """Grade `metric` along `graph`, see `growth.grade`."""
+    bounds = {"log_factor": log_factor, "tolerance": tolerance}
+    if core is None:
+        return growth.grade(points, metric, graph, model=model, max_rounds=max_rounds, **bounds)
+    graded, rounds, updates, converged = core.grade(
+        np.ascontiguousarray(points, dtype=np.float64),
+        metric,
+        graph.offsets,
+        graph.neighbours,
+        model=model,
+        max_rounds=max_rounds,
+        **bounds,
+    )
+    return Growth(metric=graded, rounds=rounds, updates=updates, converged=converged)

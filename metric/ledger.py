@@ -1,0 +1,57 @@
+"""What the pipeline did, stage by stage."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stage:
+    """The complexity of the metric after one stage, and a remark (empty if none)."""
+
+    name: str
+    complexity: float
+    remark: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ledger:
+    """What `from_fields` did.
+
+    Attributes
+    ----------
+    target_complexity, complexity : float
+        Asked, and reached by the returned metric.
+    reached : bool
+        Whether they agree within 0.1 %.
+    message : str
+        Why not, or what was reached.
+    factor : float
+        The factor on the intersected metric that the root-find chose.
+    evaluations : int
+        How many factors were tried.
+    stages : tuple of Stage
+        ``normalised <field>`` for each field, ``intersected``, then for the chosen factor
+        ``rescaled``, ``bounded`` and ``graded``.
+    gradation_rounds : int
+        Rounds of the gradation of the returned metric.
+    distortion : dict
+        Quantiles of `anistar.metric.distortion`: p50, p90, p99, max.
+    """
+
+    target_complexity: float
+    complexity: float
+    reached: bool
+    message: str
+    factor: float
+    evaluations: int
+    stages: tuple[Stage, ...]
+    gradation_rounds: int
+    distortion: dict[str, float]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The ledger in JSON builtins."""
+        values = asdict(self)
+        values["stages"] = [asdict(stage) for stage in self.stages]
+        return values

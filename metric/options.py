@@ -1,0 +1,138 @@
+"""Options of the pipeline from fields to a metric."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .bounds import check_bounds
+from .complexity import ELEMENTS_PER_COMPLEXITY
+from .gradation import DEFAULT_FACTORS, check_gradation
+from .normalisation import check_normalisation
+from .recovery import check_method
+
+Bound = float | NDArray[np.float64] | None
+
+PETSC_PREFIX = "dm_plex_metric"
+MMG_ALIASES = {"hmin": "h_min", "hmax": "h_max", "hgrad": "gradation_factor"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MetricOptions:
+    """Options of `from_fields`. None means off.
+
+    Attributes
+    ----------
+    target_complexity : float, optional
+        Complexity of the result. Either this or `target_elements` must be given.
+    target_elements : float, optional
+        Number of triangles or tetrahedra to aim at, turned into a complexity by the count of
+        perfect unit simplices, 2.309 or 8.49 per unit of complexity.
+    p : float
+        Norm of the interpolation error to minimise, from 1 to infinity.
+    h_min, h_max : float or ndarray (n,), optional
+        Bounds of the sizes, lengths. Without `h_max`, sizes stay below the diagonal of the
+        bounding box.
+    a_max : float or ndarray (n,), optional
+        Largest ratio of sizes at a point.
+    gradation_factor : float, None or "auto"
+        Growth of sizes from one unit edge to the next; "auto" is 1.5 in 2D and 1.3 in 3D.
+    gradation_model : {"physical", "metric", "mixed"}
+        Law of the growth, see `graded`.
+    method : {"auto", "quadratic", "l2"}
+        Recovery of the Hessian, see `recover_hessian`.
+    """
+
+    target_complexity: float | None = None
+    target_elements: float | None = None
+    p: float = 2.0
+    h_min: Bound = None
+    h_max: Bound = None
+    a_max: Bound = None
+    gradation_factor: float | str | None = "auto"
+    gradation_model: str = "physical"
+    method: str = "auto"
+
+    def __post_init__(self) -> None:
+        if self.target_complexity is not None and self.target_elements is not None:
+            raise ValueError(
+                "give target_complexity or target_elements, not both: got "
+                f"{self.target_complexity} and {self.target_elements}"
+            )
+        elements = self.target_elements
+        if elements is not None and not (np.isfinite(elements) and elements > 0):
+            raise ValueError(f"target_elements must be positive, got {elements}")
+        check_normalisation(self.target_complexity or 1.0, self.p)
+        if self.target_complexity is not None:
+            check_normalisation(self.target_complexity, self.p)
+        n = max((np.size(b) for b in (self.h_min, self.h_max, self.a_max)), default=1)
+        check_bounds(n, h_min=self.h_min, h_max=self.h_max, a_max=self.a_max)
+        factor = self.gradation_factor
+        if isinstance(factor, str) and factor != "auto":
+            raise ValueError(f"gradation_factor must be a number, None or 'auto', got {factor!r}")
+        check_gradation(None if isinstance(factor, str) else factor, self.gradation_model)
+        check_method(self.method)
+
+    @classmethod
+    def from_dict(cls, options: Mapping[str, Any]) -> MetricOptions:
+        """Build options from a dict that may use the names of PETSc or Mmg.
+
+        Accepted are the names above, ``dm_plex_metric_*`` or ``{"dm_plex_metric": {...}}``, and
+        ``hmin hmax hgrad``. There, a gradation of -1 and an anisotropy of 0 mean off.
+
+        Raises
+        ------
+        ValueError
+            If a key is unknown, or given twice under two names.
+        """
+        known = {field.name for field in fields(cls)}
+        found: dict[str, Any] = {}
+        for key, value in _flat(options):
+            name = MMG_ALIASES.get(key, key.removeprefix(PETSC_PREFIX + "_"))
+            if name not in known:
+                raise ValueError(
+                    f"unknown metric option '{key}'; known: {', '.join(sorted(known))}"
+                )
+            if name in found:
+                raise ValueError(f"metric option '{name}' is given twice, the second as '{key}'")
+            foreign = name != key
+            off = foreign and (
+                (name == "gradation_factor" and value is not None and value < 0)
+                or (name == "a_max" and value is not None and value == 0)
+            )
+            found[name] = None if off else value
+        return cls(**found)
+
+    def complexity_for(self, dim: int) -> float:
+        """The complexity to reach in dimension `dim`.
+
+        Raises
+        ------
+        ValueError
+            If neither a complexity nor a number of elements was given.
+        """
+        if self.target_complexity is not None:
+            return self.target_complexity
+        if self.target_elements is not None:
+            return self.target_elements / ELEMENTS_PER_COMPLEXITY[dim]
+        raise ValueError("give target_complexity or target_elements in MetricOptions, got neither")
+
+    def gradation_for(self, dim: int) -> float | None:
+        """The gradation factor in dimension `dim`."""
+        if isinstance(self.gradation_factor, str):
+            return DEFAULT_FACTORS[dim]
+        return self.gradation_factor
+
+
+def _flat(options: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    pairs: list[tuple[str, Any]] = []
+    for key, value in options.items():
+        if key == PETSC_PREFIX and isinstance(value, Mapping):
+            pairs += [(f"{PETSC_PREFIX}_{inner}", v) for inner, v in value.items()]
+        else:
+            pairs.append((key, value))
+    return pairs

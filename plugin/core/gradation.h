@@ -1,0 +1,58 @@
+#pragma once
+// Gradation: a bound on how fast a metric may change along the edges of a graph.
+
+#include "tensor.h"
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace anistar {
+
+/// How a metric M_p grows with the distance from p (b is the gradation factor):
+/// each eigenvalue by itself, lambda / (1 + sqrt(lambda) |pq| ln b)^2; all by one factor,
+/// M_p / (1 + l ln b)^2 with l the length of pq in M_p; or the geometric mean of the two
+/// with weights 1/8 and 7/8.
+/// Source: Alauzet, Size gradation control of anisotropic meshes, 2010, sections 6.1, 6.2.
+enum class GrowthModel { Physical, Metric, Mixed };
+
+enum class GradationStop { Converged, RoundLimit };
+
+struct GradationOptions {
+  GrowthModel model;
+  double log_factor; ///< ln b > 0
+  double tolerance;  ///< a metric is raised only where this share is missing
+  std::size_t max_rounds;
+};
+
+template <std::size_t d> struct Graded {
+  std::vector<SymmetricTensor<d>> metric;
+  std::size_t rounds = 0;
+  std::size_t updates = 0;
+  GradationStop stop = GradationStop::Converged;
+};
+
+/// Raises `metric` until M_q is at least the grown M_p for all neighbours p, q.
+/// The work queue holds the vertices raised in the last round; a round intersects, in
+/// increasing order of p, what they ask with their neighbours. Never coarsens, leaves a
+/// graded metric untouched, and depends on nothing but its arguments.
+/// @pre the metrics are positive definite; neighbours of v are neighbours[offsets[v]] to
+///      neighbours[offsets[v + 1]], all in range.
+template <std::size_t d>
+[[nodiscard]] Graded<d> graded(std::span<const Vector<d>> points,
+                               std::vector<SymmetricTensor<d>> metric,
+                               std::span<const std::int32_t> offsets,
+                               std::span<const std::int32_t> neighbours,
+                               const GradationOptions &options);
+
+extern template Graded<2> graded<2>(std::span<const Vector<2>>,
+                                    std::vector<SymmetricTensor<2>>,
+                                    std::span<const std::int32_t>,
+                                    std::span<const std::int32_t>,
+                                    const GradationOptions &);
+extern template Graded<3> graded<3>(std::span<const Vector<3>>,
+                                    std::vector<SymmetricTensor<3>>,
+                                    std::span<const std::int32_t>,
+                                    std::span<const std::int32_t>,
+                                    const GradationOptions &);
+
+} // namespace anistar
