@@ -112,3 +112,20 @@ def simplex_rule(dim: int) -> tuple[Floats, Floats]:
         rest = rest * (1 - t[:, axis])
     barycentric[:, dim] = rest
     return mass / mass.sum(), barycentric
+
+
+def l2_norm(mesh: Mesh, u: ArrayLike) -> float:
+    """Return the L2 norm of a P1 field, exactly.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh that carries the field.
+    u : (n,) float array
+        Values at the points.
+    """
+    nodal = np.asarray(u, dtype=np.float64)[mesh.cells]
+    # The mean of b_i b_j over a simplex is (1 + delta_ij) / ((d + 1) (d + 2)).
+    squares = (nodal**2).sum(axis=1) + nodal.sum(axis=1) ** 2
+    scale = (mesh.dim + 1) * (mesh.dim + 2)
+    return math.sqrt(float(squares @ cell_volumes(mesh.points, mesh.cells)) / scale)

@@ -70,7 +70,12 @@ def to_json(report: Any) -> str:
 
 
 def write_json(path: str | os.PathLike[str], report: Any) -> None:
-    """Write the report as JSON under a temporary name, then move it into place.
+    """Write the report as JSON, whole or not at all."""
+    write_text(path, to_json(report) + "\n")
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write text under a temporary name, then move it into place.
 
     Raises
     ------
@@ -78,7 +83,6 @@ def write_json(path: str | os.PathLike[str], report: Any) -> None:
         If the folder cannot be written; nothing is left behind.
     """
     target = Path(path)
-    text = to_json(report) + "\n"
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=target.name, suffix=".part")
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as stream:

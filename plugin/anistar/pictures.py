@@ -1,0 +1,175 @@
+"""Pictures of 2D meshes, solutions, metrics and convergence."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .mesh import Mesh
+from .topology import unique_edges
+
+try:
+    from matplotlib.collections import LineCollection
+    from matplotlib.figure import Figure
+    from matplotlib.tri import Triangulation
+except ImportError as error:
+    error.add_note("pictures need matplotlib: pip install 'anistar[plot]'")
+    raise
+
+Floats = NDArray[np.float64]
+Box = tuple[float, float, float, float]
+
+INK, PALE, ACCENT, MUTED = "#1d2733", "#9aa7b4", "#c8402f", "#4a7ba6"
+_POINTS_ON_ELLIPSE = 33
+_INCHES = 11.0
+_DPI = 150
+
+
+def mesh_picture(path: str | os.PathLike[str], mesh: Mesh, *, box: Box | None = None) -> None:
+    """Draw the edges of a mesh, its boundary and interfaces stronger.
+
+    Parameters
+    ----------
+    path : path
+        A PNG, SVG or PDF file.
+    mesh : Mesh
+        A 2D mesh.
+    box : (x_min, x_max, y_min, y_max), optional
+        Part to show; all of it by default.
+    """
+    figure, axes = _canvas(mesh, box)
+    _draw_edges(axes, mesh, width=0.35)
+    _draw_boundary(axes, mesh)
+    _save(figure, path)
+
+
+def solution_picture(
+    path: str | os.PathLike[str],
+    mesh: Mesh,
+    values: ArrayLike,
+    *,
+    label: str = "",
+    box: Box | None = None,
+) -> None:
+    """Draw a point field as colours, with a colour bar.
+
+    Parameters
+    ----------
+    path : path
+        A PNG, SVG or PDF file.
+    mesh : Mesh
+        A 2D mesh.
+    values : (n,) float array
+        The field at the points.
+    label : str
+        Name and unit beside the colour bar.
+    box : (x_min, x_max, y_min, y_max), optional
+        Part to show; all of it by default.
+    """
+    figure, axes = _canvas(mesh, box)
+    triangles = Triangulation(*mesh.points.T, mesh.cells)
+    colours = axes.tripcolor(triangles, np.asarray(values), shading="gouraud", cmap="inferno")
+    figure.colorbar(colours, ax=axes, label=label, fraction=0.02, pad=0.01)
+    _draw_boundary(axes, mesh)
+    _save(figure, path)
+
+
+def metric_picture(
+    path: str | os.PathLike[str], mesh: Mesh, M: Floats, *, box: Box | None = None
+) -> None:
+    """Draw the metric at the points as ellipses that neighbours nearly touch.
+
+    Each ellipse is ``(x - p)^T M (x - p) = 1/4``: a unit edge joins two of them.
+
+    Parameters
+    ----------
+    path : path
+        A PNG, SVG or PDF file.
+    mesh : Mesh
+        A 2D mesh.
+    M : (n, 2, 2) float64
+        The metric at the points, in 1 / length**2.
+    box : (x_min, x_max, y_min, y_max), optional
+        Part to show; all of it by default.
+    """
+    figure, axes = _canvas(mesh, box)
+    axes.add_collection(LineCollection(ellipses(mesh.points, M), colors=MUTED, linewidths=0.6))
+    _draw_boundary(axes, mesh)
+    _save(figure, path)
+
+
+def ellipses(points: Floats, M: Floats) -> Floats:
+    """Return the (n, 33, 2) closed curves ``(x - p)^T M (x - p) = 1/4``."""
+    turns = np.linspace(0.0, 2 * np.pi, _POINTS_ON_ELLIPSE)
+    circle = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    values, vectors = np.linalg.eigh(M)
+    half_axes = 0.5 / np.sqrt(values)
+    return np.asarray(
+        points[:, None] + np.einsum("nij,nj,tj->nti", vectors, half_axes, circle)
+    )
+
+
+def convergence_picture(
+    path: str | os.PathLike[str],
+    curves: Mapping[str, Sequence[tuple[int, float]]],
+    *,
+    order: float,
+    label: str,
+) -> None:
+    """Draw error against unknowns for several kinds of mesh, with a line of known order.
+
+    Parameters
+    ----------
+    path : path
+        A PNG, SVG or PDF file.
+    curves : mapping of str to sequence of (unknowns, error)
+        One curve for each name; the last is the one that the line of known order goes along.
+    order : float
+        Slope of the line: the error falls like ``unknowns**-order``.
+    label : str
+        What the error is.
+    """
+    figure = Figure(figsize=(6.4, 4.8), layout="constrained")
+    axes = figure.add_subplot()
+    marks = zip((MUTED, ACCENT, INK), "osd", strict=True)
+    for (name, curve), (colour, mark) in zip(curves.items(), marks, strict=False):
+        axes.loglog(*zip(*curve, strict=True), marker=mark, color=colour, label=name)
+    last = np.array(list(curves.values())[-1], dtype=np.float64)
+    line = last[0, 1] * (last[:, 0] / last[0, 0]) ** -order * 0.6
+    axes.loglog(last[:, 0], line, "--", color=PALE, label=f"order $N^{{-{order:g}}}$")
+    axes.set(xlabel="unknowns $N$", ylabel=label)
+    axes.grid(True, which="both", color="#e4e8ec", linewidth=0.6)
+    axes.legend(frameon=False)
+    _save(figure, path)
+
+
+def _canvas(mesh: Mesh, box: Box | None) -> tuple[Any, Any]:
+    if mesh.dim != 2:
+        raise ValueError(f"pictures are of 2D meshes, not {mesh.dim}D")
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    margin = 0.01 * float(np.max(high - low))
+    whole = (low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin)
+    left, right, bottom, top = box if box is not None else whole
+    height = _INCHES * (top - bottom) / (right - left)
+    figure = Figure(figsize=(_INCHES, height), layout="constrained")
+    axes = figure.add_subplot()
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    axes.set_axis_off()
+    return figure, axes
+
+
+def _draw_edges(axes: Any, mesh: Mesh, width: float) -> None:
+    edges = unique_edges(mesh.cells, mesh.n_points)
+    axes.add_collection(LineCollection(mesh.points[edges], colors=MUTED, linewidths=width))
+
+
+def _draw_boundary(axes: Any, mesh: Mesh) -> None:
+    axes.add_collection(LineCollection(mesh.points[mesh.facets], colors=INK, linewidths=1.1))
+
+
+def _save(figure: Any, path: str | os.PathLike[str]) -> None:
+    figure.savefig(path, dpi=_DPI)
