@@ -151,7 +151,7 @@ def facet_table(cells: Int, n_points: int) -> FacetTable:
 def boundary_facets(cells: Int, n_points: int) -> Int:
     """Return the (k, d) facets that have one cell only, oriented outward."""
     table = facet_table(cells, n_points)
-    return table.facets[table.counts == 1]
+    return np.asarray(table.facets[table.counts == 1])
 
 
 def neighbours(cells: Int, n_points: int) -> Int:

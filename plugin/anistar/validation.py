@@ -274,7 +274,7 @@ def _is_edge(cells: Int, edges: Int, keys: NDArray[np.int64], n_points: int) -> 
 def needs_facet(cell_tags: Int, table: FacetTable) -> Bool:
     """Tell which facets of the table must be stored: the boundary and region interfaces."""
     tags = cell_tags[table.cells]
-    return (table.counts == 1) | ((table.counts > 1) & (tags[:, 0] != tags[:, 1]))
+    return np.asarray((table.counts == 1) | ((table.counts > 1) & (tags[:, 0] != tags[:, 1])))
 
 
 def _completeness_violations(mesh: Mesh, table: FacetTable) -> Iterator[Violation]:

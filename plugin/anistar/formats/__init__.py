@@ -1,0 +1,191 @@
+"""Reading and writing meshes, fields and metrics; the suffix of the path chooses the format."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import FormatError
+from ..fields import Field, as_fields
+from ..mesh import Mesh
+from ..topology import Float
+from . import gmf, gmsh, medit, meshio_guard, vtu
+from .assembly import ReadReport, assembled
+from .atomic import replaced
+from .export import exported
+from .raw import RawMesh
+
+__all__ = [
+    "ReadReport",
+    "read",
+    "read_metric",
+    "read_with_report",
+    "write",
+    "write_metric",
+]
+
+_log = logging.getLogger(__name__)
+
+PathLike = str | os.PathLike[str]
+
+_READERS: dict[str, Callable[[Path], RawMesh]] = {
+    ".mesh": medit.read_mesh,
+    ".meshb": medit.read_mesh,
+    ".msh": gmsh.read,
+}
+_WRITERS: dict[str, Callable[[Path, Mesh, Mapping[str, Field]], None]] = {
+    ".mesh": medit.write_mesh,
+    ".meshb": medit.write_mesh,
+    ".msh": gmsh.write,
+    ".vtu": vtu.write,
+}
+_SOLUTIONS = (".sol", ".solb")
+METRIC = "metric"
+
+
+def read(path: PathLike) -> tuple[Mesh, dict[str, Field]]:
+    """Read a mesh and its fields.
+
+    Single inverted cells are turned and points without a cell dropped, each with a logged
+    warning; `read_with_report` returns the counts. Planar meshes with z = 0 become 2D.
+
+    Parameters
+    ----------
+    path : path
+        Medit (`.mesh .meshb`, with the fields of a `.sol` or `.solb` of the same name), Gmsh
+        (`.msh`), VTU, or anything that meshio reads.
+
+    Returns
+    -------
+    mesh : Mesh
+    fields : dict of str to Field
+
+    Raises
+    ------
+    FormatError
+        If the file is unreadable, truncated, or holds no valid mesh; names the file and why.
+    """
+    mesh, fields, _ = read_with_report(path)
+    return mesh, fields
+
+
+def read_with_report(path: PathLike) -> tuple[Mesh, dict[str, Field], ReadReport]:
+    """Read a mesh and its fields, and tell what was changed to make them valid."""
+    path = Path(path)
+    if path.suffix in _SOLUTIONS:
+        raise FormatError(f"cannot read {path}: a solution file holds no mesh, give the mesh file")
+    if not path.is_file():
+        raise FormatError(f"cannot read {path}: no such file")
+    return assembled(_READERS.get(path.suffix, meshio_guard.read)(path), path)
+
+
+def write(
+    path: PathLike, mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None
+) -> None:
+    """Write a mesh and its fields under a temporary name, then move them into place.
+
+    Parameters
+    ----------
+    path : path
+        The suffix chooses the format, see `read`.
+    mesh : Mesh
+    fields : mapping of str to Field or array, optional
+        A bare array lives on the points. The medit formats put fields into a `.sol` or `.solb`
+        of the same name.
+
+    Raises
+    ------
+    ValueError
+        If a field does not fit the mesh.
+    FormatError
+        If the path cannot be written, or the format cannot hold what is given.
+    """
+    path = Path(path)
+    checked = as_fields(mesh, fields)
+    if path.suffix in _WRITERS:
+        _WRITERS[path.suffix](path, mesh, checked)
+        return
+    if path.suffix in _SOLUTIONS:
+        medit.write_solution(path, mesh, checked)
+        return
+    if mesh.names:
+        _log.warning("%s: this format has no names, they are not written", path)
+    with replaced(path) as temporary:
+        meshio_guard.write(temporary, exported(mesh, checked))
+
+
+def read_metric(path: PathLike, mesh: Mesh) -> Float:
+    """Read a metric at the points of a mesh.
+
+    Parameters
+    ----------
+    path : path
+        A solution file with one field: tensors are the metric, scalars are sizes h, which mean
+        the metric 1/h^2. Or a mesh file with a tensor field, called `metric` if there are several.
+    mesh : Mesh
+        The mesh that carries the metric.
+
+    Returns
+    -------
+    (n, d, d) float64
+
+    Raises
+    ------
+    FormatError
+        If the file holds no metric, or one of another length or dimension.
+    """
+    path = Path(path)
+    name, values = _metric_field(path)
+    if len(values) != mesh.n_points:
+        raise FormatError(
+            f"{path}: {name!r} has {len(values)} values, the mesh has {mesh.n_points} points"
+        )
+    if values.ndim == 1:
+        bad = ~(np.isfinite(values) & (values > 0))
+        if bad.any():
+            at = int(np.argmax(bad))
+            raise FormatError(f"{path}: the size at point {at} is {values[at]:.3g}, not positive")
+        return np.asarray(np.eye(mesh.dim) / values[:, None, None] ** 2)
+    if values.shape[1:] != (mesh.dim, mesh.dim):
+        raise FormatError(f"{path}: {name!r} is not a {mesh.dim} x {mesh.dim} tensor field")
+    return np.asarray(values, dtype=np.float64)
+
+
+def _metric_field(path: Path) -> tuple[str, Any]:
+    if path.suffix in _SOLUTIONS:
+        arrays = medit.solution_arrays(gmf.load(path), "SolAtVertices", "points")
+        if len(arrays) != 1:
+            raise FormatError(f"{path}: a metric is one field at the points, not {len(arrays)}")
+        return next(iter(arrays.items()))
+    _, fields = read(path)
+    tensors = {
+        name: field.values
+        for name, field in fields.items()
+        if field.kind == "tensor" and field.on == "points"
+    }
+    if METRIC in tensors:
+        return METRIC, tensors[METRIC]
+    if len(tensors) != 1:
+        raise FormatError(
+            f"{path}: {len(tensors)} tensor fields at points, one or one called {METRIC!r} expected"
+        )
+    return next(iter(tensors.items()))
+
+
+def write_metric(path: PathLike, mesh: Mesh, M: ArrayLike) -> None:
+    """Write a metric: alone into a solution file, with the mesh into any other format.
+
+    Parameters
+    ----------
+    path : path
+    mesh : Mesh
+    M : (n, d, d) array
+        Metric at the points.
+    """
+    write(path, mesh, {METRIC: Field(np.asarray(M, dtype=np.float64), "points", "tensor")})

@@ -1,0 +1,171 @@
+"""Medit meshes and solutions: `.mesh`, `.meshb`, `.sol`, `.solb`.
+
+A mesh has no fields of its own; those in the solution file of the same name beside it are taken
+as its fields. Names of tags and fields are kept in comments, which only the text encoding has.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import FormatError
+from ..fields import Field
+from ..mesh import Mesh
+from . import gmf
+from .atomic import replaced
+from .raw import Array, Block, RawMesh
+from .tensor_orders import from_components, to_components
+
+_log = logging.getLogger(__name__)
+
+_BLOCKS = {"Edges": "line", "Triangles": "triangle", "Tetrahedra": "tetra"}
+_REFUSED = {
+    "Quadrilaterals": "quad",
+    "Prisms": "wedge",
+    "Hexahedra": "hexahedron",
+    "Pyramids": "pyramid",
+    "EdgesP2": "line3",
+    "TrianglesP2": "triangle6",
+    "TetrahedraP2": "tetra10",
+}
+_SOLUTION_SUFFIX = {".mesh": ".sol", ".meshb": ".solb"}
+_TYPES = {"scalar": 1, "label": 1, "vector": 2, "tensor": 3}
+
+
+def read_mesh(path: Path) -> RawMesh:
+    """Read a mesh and the fields in the solution file of the same name, if there is one."""
+    container = gmf.load(path)
+    if container.points is None:
+        raise FormatError(f"cannot read {path}: it holds no vertices")
+    blocks = [
+        Block(kind, table[:, :-1] - 1, table[:, -1])
+        for kind, table in _tables(container, {**_BLOCKS, **_REFUSED})
+    ]
+    corners = container.tables.get("Corners", np.zeros((0, 1), np.int64))[:, 0] - 1
+    raw = RawMesh(container.points, blocks, corners)
+    raw.names = {(int(dim), int(tag)): str(name) for dim, tag, name in _names(container, path)}
+    for suffix in (".sol", ".solb"):
+        companion = path.with_suffix(suffix)
+        if companion.is_file():
+            _add_fields(raw, companion)
+            break
+    return raw
+
+
+def _tables(container: gmf.Container, kinds: Mapping[str, str]) -> list[tuple[str, Array]]:
+    return [
+        (kind, container.tables[keyword])
+        for keyword, kind in kinds.items()
+        if len(container.tables.get(keyword, ()))
+    ]
+
+
+def _names(container: gmf.Container, path: Path) -> list[list[Any]]:
+    names = container.notes.get("names", [])
+    if not all(isinstance(entry, list) and len(entry) == 3 for entry in names):
+        raise FormatError(f"cannot read {path}: the names in its comments are damaged")
+    return list(names)
+
+
+def _add_fields(raw: RawMesh, path: Path) -> None:
+    container = gmf.load(path)
+    points = solution_arrays(container, "SolAtVertices", "points")
+    if any(len(values) != len(raw.points) for values in points.values()):
+        text = f"{path.name} is not used: it has another number of points"
+        raw.warnings.append(text)
+        return
+    raw.point_data.update(points)
+    for keyword, kind in (("SolAtTriangles", "triangle"), ("SolAtTetrahedra", "tetra")):
+        arrays = solution_arrays(container, keyword, "cells")
+        for block in raw.blocks:
+            if block.kind == kind:
+                block.data.update(arrays)
+    raw.labels = {
+        name
+        for listed in container.notes.get("fields", {}).values()
+        for name, kind in listed
+        if kind == "label"
+    }
+
+
+def solution_arrays(container: gmf.Container, keyword: str, where: str) -> dict[str, Array]:
+    """Return the fields of one section by name: (k,), (k, d) or (k, d, d) arrays."""
+    solution = container.solutions.get(keyword)
+    if solution is None:
+        return {}
+    listed = [name for name, _ in container.notes.get("fields", {}).get(where, [])]
+    arrays: dict[str, Array] = {}
+    at = 0
+    for i, width in enumerate(gmf.columns_of(solution.types, container.dim)):
+        code = solution.types[i]
+        values = solution.values[:, at : at + width]
+        at += width
+        name = listed[i] if len(listed) == len(solution.types) else f"field{i}"
+        if code == 1:
+            arrays[name] = values[:, 0].copy()
+        elif code == 3:
+            arrays[name] = from_components(values, "medit")
+        elif code == 4:
+            arrays[name] = values.reshape(-1, container.dim, container.dim).copy()
+        else:
+            arrays[name] = values.copy()
+    return arrays
+
+
+def write_mesh(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
+    """Write a mesh, and its fields to the solution file of the same name."""
+    tables = {"Edges": mesh.edges, "Triangles": mesh.facets, "Tetrahedra": mesh.cells}
+    tags = {"Edges": mesh.edge_tags, "Triangles": mesh.facet_tags, "Tetrahedra": mesh.cell_tags}
+    if mesh.dim == 2:
+        tables = {"Edges": mesh.facets, "Triangles": mesh.cells}
+        tags = {"Edges": mesh.facet_tags, "Triangles": mesh.cell_tags}
+    container = gmf.Container(dim=mesh.dim, points=mesh.points)
+    for keyword, rows in tables.items():
+        if len(rows):
+            container.tables[keyword] = np.c_[rows.astype(np.int64) + 1, tags[keyword]]
+    if len(mesh.edges):
+        container.tables["Ridges"] = np.arange(1, len(mesh.edges) + 1, dtype=np.int64)[:, None]
+    if len(mesh.corners):
+        container.tables["Corners"] = mesh.corners.astype(np.int64)[:, None] + 1
+    if mesh.names and path.suffix == ".mesh":
+        entries = [[dim, tag, name] for (dim, tag), name in sorted(mesh.names.items())]
+        container.notes["names"] = entries
+    elif mesh.names:
+        _log.warning("%s: the binary medit format has no names, they are not written", path)
+    with replaced(path) as temporary:
+        gmf.save(temporary, container)
+    if fields:
+        write_solution(path.with_suffix(_SOLUTION_SUFFIX[path.suffix]), mesh, fields)
+
+
+def write_solution(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
+    """Write fields; several fields are interleaved point by point, cell by cell."""
+    container = gmf.Container(dim=mesh.dim)
+    cells = "SolAtTriangles" if mesh.dim == 2 else "SolAtTetrahedra"
+    noted: dict[str, list[list[str]]] = {}
+    for keyword, where in (("SolAtVertices", "points"), (cells, "cells")):
+        chosen = {name: field for name, field in fields.items() if field.on == where}
+        if not chosen:
+            continue
+        columns = [_columns(path, name, field) for name, field in chosen.items()]
+        types = [_TYPES[str(field.kind)] for field in chosen.values()]
+        container.solutions[keyword] = gmf.Solution(types, np.concatenate(columns, axis=1))
+        noted[where] = [[name, str(field.kind)] for name, field in chosen.items()]
+    if path.suffix == ".sol":
+        container.notes["fields"] = noted
+    with replaced(path) as temporary:
+        gmf.save(temporary, container)
+
+
+def _columns(path: Path, name: str, field: Field) -> Array:
+    if field.kind == "tensor":
+        try:
+            return to_components(field.values, "medit")
+        except ValueError as error:
+            raise FormatError(f"cannot write field {name!r} to {path}: {error}") from error
+    return field.values.reshape(len(field.values), -1).astype(np.float64)

@@ -1,0 +1,152 @@
+"""meshio behind a guard: it prints, and leaves the process on a bad file.
+
+References
+----------
+meshio 5.3.5: `_helpers.py` ends with `sys.exit(1)` when no reader accepts a file.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+
+from ..errors import FormatError
+from .raw import KIND_DIM, Block, RawMesh
+
+# Integer arrays that carry tags, the first one present is taken.
+TAG_KEYS = ("medit:ref", "gmsh:physical", "cell_tags", "refs", "gmsh:geometrical")
+# JSON of [dim, tag, name] as bytes, in the field data of the files that we write.
+NAMES = "anistar:names"
+_XDMF = (".xdmf", ".xmf")
+_VTK = (".vtu", ".vtk")
+
+
+@contextlib.contextmanager
+def guarded(action: str, path: Path) -> Iterator[None]:
+    """Turn every way in which meshio fails into a `FormatError` that names the file."""
+    said = io.StringIO()
+    try:
+        with (
+            contextlib.redirect_stdout(said),
+            contextlib.redirect_stderr(said),
+            warnings.catch_warnings(),
+        ):
+            warnings.simplefilter("ignore")
+            yield
+    except OSError as error:
+        raise FormatError(f"cannot {action} {path}: {error.strerror or error}") from error
+    except SystemExit as error:
+        reason = " ".join(said.getvalue().split()) or "meshio gave up"
+        raise FormatError(f"cannot {action} {path}: {reason}") from error
+    except Exception as error:
+        reason = str(error) or type(error).__name__
+        raise FormatError(f"cannot {action} {path}: {reason}") from error
+
+
+def read(path: Path, file_format: str | None = None) -> RawMesh:
+    """Read anything that meshio reads."""
+    if not path.is_file():
+        raise FormatError(f"cannot read {path}: no such file")
+    with guarded("read", path):
+        mesh = meshio.read(path, file_format=file_format)
+        raw = RawMesh(np.asarray(mesh.points, dtype=np.float64), _blocks(mesh))
+    raw.names = _names(path, mesh)
+    raw.six = "xdmf" if path.suffix in _XDMF else "vtk" if path.suffix in _VTK else None
+    raw.point_data = {name: data for name, data in mesh.point_data.items() if not _hidden(name)}
+    if not _has_tags(mesh):
+        _add_cell_sets(mesh, raw)
+    return raw
+
+
+def _hidden(name: str) -> bool:
+    return name in TAG_KEYS or name.startswith("gmsh:")
+
+
+def _has_tags(mesh: Any) -> bool:
+    return any(key in mesh.cell_data for key in TAG_KEYS)
+
+
+def _blocks(mesh: Any) -> list[Block]:
+    key = _tag_key(mesh)
+    blocks = []
+    for i, block in enumerate(mesh.cells):
+        tags = None if key is None else np.asarray(mesh.cell_data[key][i], dtype=np.int64).ravel()
+        data = {
+            name: np.asarray(values[i])
+            for name, values in mesh.cell_data.items()
+            if not _hidden(name)
+        }
+        known = block.type in KIND_DIM
+        rows = np.asarray(block.data) if known else np.zeros((len(block.data), 0), np.int64)
+        blocks.append(Block(block.type, rows, tags, data))
+    return blocks
+
+
+def _tag_key(mesh: Any) -> str | None:
+    """Return the first tag array that says anything: all zeros count as not given."""
+    present = [key for key in TAG_KEYS if key in mesh.cell_data]
+    for key in present:
+        if any(np.any(np.asarray(values)) for values in mesh.cell_data[key]):
+            return key
+    return None
+
+
+def _names(path: Path, mesh: Any) -> dict[tuple[int, int], str]:
+    """Return our own names, or the physical names that the gmsh readers leave."""
+    if NAMES in mesh.field_data:
+        return _decoded(path, mesh.field_data[NAMES])
+    names = {}
+    for name, value in mesh.field_data.items():
+        pair = np.asarray(value)
+        if pair.shape == (2,) and pair.dtype.kind in "iu":
+            names[int(pair[1]), int(pair[0])] = str(name)
+    return names
+
+
+def _decoded(path: Path, data: Any) -> dict[tuple[int, int], str]:
+    try:
+        entries = json.loads(np.asarray(data).astype(np.uint8).tobytes().decode())
+        return {(int(dim), int(tag)): str(name) for dim, tag, name in entries}
+    except (ValueError, TypeError) as error:
+        raise FormatError(f"cannot read {path}: the array {NAMES} is damaged: {error}") from error
+
+
+def _add_cell_sets(mesh: Any, raw: RawMesh) -> None:
+    """Give numbers to the cell sets of formats that have names but no integer tags."""
+    sets = {name: rows for name, rows in mesh.cell_sets.items() if not name.startswith("gmsh:")}
+    for tag, (name, members) in enumerate(sets.items(), start=1):
+        for block, rows in zip(raw.blocks, members, strict=True):
+            if rows is None or len(rows) == 0 or block.kind not in KIND_DIM:
+                continue
+            if block.tags is None:
+                block.tags = np.zeros(len(block.rows), np.int64)
+            block.tags[np.asarray(rows)] = tag
+            raw.names[KIND_DIM[block.kind], tag] = name
+
+
+def write(path: Path, content: RawMesh) -> None:
+    """Write through meshio, tags as the integer array `medit:ref`."""
+    blocks, options = content.blocks, {}
+    if path.suffix in _XDMF:
+        # meshio cannot read the single points back that it writes among other cells, and puts
+        # the numbers into a second file that knows the temporary name.
+        blocks = [block for block in blocks if block.kind != "vertex"]
+        options = {"data_format": "XML"}
+    cell_data = {name: [block.data[name] for block in blocks] for name in blocks[0].data}
+    cell_data[TAG_KEYS[0]] = [np.asarray(block.tags) for block in blocks]
+    with guarded("write", path):
+        mesh = meshio.Mesh(
+            content.points,
+            [(block.kind, block.rows) for block in blocks],
+            point_data=content.point_data,
+            cell_data=cell_data,
+        )
+        meshio.write(path, mesh, **options)

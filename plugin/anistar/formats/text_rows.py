@@ -1,0 +1,38 @@
+"""Numbers in text: fast printing that keeps every bit, and parsing that notices garbage."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..topology import Float
+
+
+def printed(*columns: NDArray[Any]) -> str:
+    """Return one line for each row, the columns side by side, doubles with 17 digits."""
+    tables = [column.reshape(len(column), -1) for column in columns]
+    if len(tables[0]) == 0:
+        return ""
+    formats = ["%d" if t.dtype.kind in "iu" else "%.17g" for t in tables for _ in t.T]
+    flat = [values for table in tables for values in table.T.tolist()]
+    line = " ".join(formats)
+    return "\n".join([line % row for row in zip(*flat, strict=True)]) + "\n"
+
+
+def parsed(text: str) -> Float:
+    """Return the numbers in a text.
+
+    Raises
+    ------
+    ValueError
+        If anything in it is not a number.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            return np.fromstring(text, dtype=np.float64, sep=" ")
+        except DeprecationWarning as error:
+            raise ValueError("holds something that is not a number") from error

@@ -1,0 +1,76 @@
+"""VTU, written here so that names travel along and nothing is lost; meshio reads it.
+
+Tags are the integer cell array `medit:ref` on cells, facets, ridges and corners alike. Names are
+JSON in the field data array `anistar:names`, as bytes, because readers other than VTK's own stop
+at an array of strings.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import struct
+from collections.abc import Mapping
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from ..fields import Field
+from ..mesh import Mesh
+from . import meshio_guard
+from .atomic import replaced
+from .export import exported
+from .raw import KIND_DIM, Array, RawMesh
+
+_VTK_TYPE = {"vertex": 1, "line": 3, "triangle": 5, "tetra": 10}
+_VTK_DTYPE = {"float64": "Float64", "int64": "Int64", "int32": "Int32", "uint8": "UInt8"}
+
+
+def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
+    """Write mesh, tags, names and fields."""
+    content = exported(mesh, fields)
+    with replaced(path) as temporary:
+        temporary.write_text("".join(_document(content)), encoding="ascii")
+
+
+def _document(content: RawMesh) -> list[str]:
+    blocks = content.blocks
+    sizes = np.concatenate([np.full(len(b.rows), KIND_DIM[b.kind] + 1, np.int64) for b in blocks])
+    types = np.concatenate([np.full(len(b.rows), _VTK_TYPE[b.kind], np.uint8) for b in blocks])
+    connectivity = np.concatenate([b.rows.ravel().astype(np.int64) for b in blocks])
+    tags = np.concatenate([np.asarray(b.tags, dtype=np.int32) for b in blocks])
+    cell_data = {name: np.concatenate([b.data[name] for b in blocks]) for name in blocks[0].data}
+    entries = [[dim, tag, name] for (dim, tag), name in sorted(content.names.items())]
+    encoded = np.frombuffer(json.dumps(entries).encode("ascii"), dtype=np.uint8)
+    return [
+        '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" '
+        'byte_order="LittleEndian" header_type="UInt64">\n<UnstructuredGrid>\n<FieldData>\n',
+        _array(meshio_guard.NAMES, encoded, tuples=True),
+        f'</FieldData>\n<Piece NumberOfPoints="{len(content.points)}" '
+        f'NumberOfCells="{len(sizes)}">\n<Points>\n',
+        _array("Points", content.points),
+        "</Points>\n<Cells>\n",
+        _array("connectivity", connectivity),
+        _array("offsets", np.cumsum(sizes)),
+        _array("types", types),
+        "</Cells>\n<PointData>\n",
+        *[_array(name, values) for name, values in content.point_data.items()],
+        "</PointData>\n<CellData>\n",
+        _array(meshio_guard.TAG_KEYS[0], tags),
+        *[_array(name, values) for name, values in cell_data.items()],
+        "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
+    ]
+
+
+def _array(name: str, values: Array, *, tuples: bool = False) -> str:
+    """Return one inline base64 array; `tuples` adds the count that field data needs."""
+    components = values.shape[1] if values.ndim > 1 else 1
+    little = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
+    body = base64.b64encode(struct.pack("<Q", little.nbytes) + little.tobytes()).decode("ascii")
+    count = f' NumberOfTuples="{len(values)}"' if tuples else ""
+    kind = _VTK_DTYPE[values.dtype.name]
+    return (
+        f'<DataArray type="{kind}" Name={quoteattr(name)} NumberOfComponents="{components}"'
+        f'{count} format="binary">{body}</DataArray>\n'
+    )
