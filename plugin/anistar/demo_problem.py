@@ -1,11 +1,10 @@
 """The demo's problem: heat carried through a channel with a step and a round obstacle.
 
 ``-eps Laplace(u) + b . grad(u) = 0`` with eps = 1e-3 and a wind of unit speed. The fluid enters
-cold; the step, the floor and the obstacle are hot; the ceiling and the outlet are cold, and the
-wind pushes the heat against them. The solution has layers of thickness eps upstream of the
-obstacle, at the ceiling and at the outlet, layers of thickness sqrt(eps) inside the domain behind
-the re-entrant corner and on both sides of the obstacle's wake, and a jump in the boundary values
-where the step meets the inlet.
+cold, the step and the obstacle are hot, and the wind blows downwards onto a cold floor. The
+solution has layers of thickness eps on the step, upstream of the obstacle, on the floor and at the
+outlet, layers of thickness sqrt(eps) inside the domain behind the re-entrant corner and on both
+sides of the obstacle's wake, and jumps in the boundary values at both ends of the step.
 """
 
 from __future__ import annotations
@@ -40,12 +39,12 @@ from .adapters.skfem import to_skfem
 Floats = NDArray[np.float64]
 
 EPSILON = 1e-3
-ANGLE = math.radians(12.0)
+ANGLE = math.radians(-12.0)
 WIND = np.array([math.cos(ANGLE), math.sin(ANGLE)])
 
 LENGTH, HEIGHT = 3.0, 1.0
 STEP_LENGTH, STEP_HEIGHT = 0.6, 0.3
-CENTRE, RADIUS = np.array([1.2, 0.55]), 0.15
+CENTRE, RADIUS = np.array([1.1, 0.62]), 0.15
 CIRCLE_SEGMENTS = 48
 
 #: Facet tags of the channel and their names.
@@ -56,7 +55,7 @@ TEMPERATURE = {
     "inlet": 0.0,
     "ceiling": 0.0,
     "outlet": 0.0,
-    "floor": 1.0,
+    "floor": 0.0,
     "step": 1.0,
     "obstacle": 1.0,
 }

@@ -15,6 +15,7 @@ from .topology import unique_edges
 try:
     from matplotlib.collections import LineCollection
     from matplotlib.figure import Figure
+    from matplotlib.path import Path as Outline
     from matplotlib.tri import Triangulation
 except ImportError as error:
     error.add_note("pictures need matplotlib: pip install 'anistar[plot]'")
@@ -71,9 +72,7 @@ def solution_picture(
         Part to show; all of it by default.
     """
     figure, axes = _canvas(mesh, box)
-    triangles = Triangulation(*mesh.points.T, mesh.cells)
-    colours = axes.tripcolor(triangles, np.asarray(values), shading="gouraud", cmap="inferno")
-    figure.colorbar(colours, ax=axes, label=label, fraction=0.02, pad=0.01)
+    _draw_solution(figure, axes, mesh, values, label)
     _draw_boundary(axes, mesh)
     _save(figure, path)
 
@@ -97,8 +96,40 @@ def metric_picture(
         Part to show; all of it by default.
     """
     figure, axes = _canvas(mesh, box)
-    axes.add_collection(LineCollection(ellipses(mesh.points, M), colors=MUTED, linewidths=0.6))
+    _draw_ellipses(axes, mesh, M)
     _draw_boundary(axes, mesh)
+    _save(figure, path)
+
+
+def overview_picture(
+    path: str | os.PathLike[str],
+    mesh: Mesh,
+    values: ArrayLike,
+    metric: tuple[Mesh, Floats],
+    *,
+    label: str = "",
+) -> None:
+    """Draw, one above the other, a solution, its mesh and a metric.
+
+    Parameters
+    ----------
+    path : path
+        A PNG, SVG or PDF file.
+    mesh : Mesh
+        A 2D mesh.
+    values : (n,) float array
+        The solution at the points.
+    metric : (Mesh, (k, 2, 2) float64)
+        A metric and the mesh that carries it; a coarser one shows its ellipses better.
+    label : str
+        Name and unit beside the colour bar.
+    """
+    figure, panels = _canvas(mesh, None, panels=3)
+    _draw_solution(figure, panels[0], mesh, values, label)
+    _draw_edges(panels[1], mesh, width=0.3)
+    _draw_ellipses(panels[2], *metric)
+    for axes, shown in zip(panels, (mesh, mesh, metric[0]), strict=True):
+        _draw_boundary(axes, shown)
     _save(figure, path)
 
 
@@ -108,9 +139,7 @@ def ellipses(points: Floats, M: Floats) -> Floats:
     circle = np.stack([np.cos(turns), np.sin(turns)], axis=1)
     values, vectors = np.linalg.eigh(M)
     half_axes = 0.5 / np.sqrt(values)
-    return np.asarray(
-        points[:, None] + np.einsum("nij,nj,tj->nti", vectors, half_axes, circle)
-    )
+    return np.asarray(points[:, None] + np.einsum("nij,nj,tj->nti", vectors, half_axes, circle))
 
 
 def convergence_picture(
@@ -147,19 +176,37 @@ def convergence_picture(
     _save(figure, path)
 
 
-def _canvas(mesh: Mesh, box: Box | None) -> tuple[Any, Any]:
+def _canvas(mesh: Mesh, box: Box | None, panels: int = 1) -> tuple[Any, Any]:
     if mesh.dim != 2:
         raise ValueError(f"pictures are of 2D meshes, not {mesh.dim}D")
     low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
     margin = 0.01 * float(np.max(high - low))
     whole = (low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin)
     left, right, bottom, top = box if box is not None else whole
-    height = _INCHES * (top - bottom) / (right - left)
+    height = _INCHES * (top - bottom) / (right - left) * panels
     figure = Figure(figsize=(_INCHES, height), layout="constrained")
-    axes = figure.add_subplot()
-    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
-    axes.set_axis_off()
+    axes = figure.subplots(panels)
+    for one in np.atleast_1d(axes):
+        one.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+        one.set_axis_off()
     return figure, axes
+
+
+def _draw_solution(figure: Any, axes: Any, mesh: Mesh, values: ArrayLike, label: str) -> None:
+    triangles = Triangulation(*mesh.points.T, mesh.cells)
+    colours = axes.tripcolor(triangles, np.asarray(values), shading="gouraud", cmap="inferno")
+    figure.colorbar(colours, ax=axes, label=label, fraction=0.02, pad=0.01)
+
+
+def _draw_ellipses(axes: Any, mesh: Mesh, M: Floats) -> None:
+    curves = LineCollection(ellipses(mesh.points, M), colors=MUTED, linewidths=0.6)
+    axes.add_collection(curves)
+    # The triangles together are the domain: what lies outside of it is not metric.
+    corners = mesh.points[np.column_stack([mesh.cells, mesh.cells[:, :1]])].reshape(-1, 2)
+    codes = np.tile(
+        [Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY], mesh.n_cells
+    )
+    curves.set_clip_path(Outline(corners, codes), axes.transData)
 
 
 def _draw_edges(axes: Any, mesh: Mesh, width: float) -> None:

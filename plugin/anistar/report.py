@@ -6,12 +6,13 @@ import dataclasses
 import json
 import math
 import os
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
+
+from .formats.atomic import replaced
 
 
 @runtime_checkable
@@ -79,15 +80,8 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
     Raises
     ------
-    OSError
+    FormatError
         If the folder cannot be written; nothing is left behind.
     """
-    target = Path(path)
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=target.name, suffix=".part")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        Path(temporary).replace(target)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    with replaced(Path(path)) as temporary:
+        temporary.write_text(text, encoding="utf-8")
