@@ -11,8 +11,8 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
                                      std::size_t n_points) {
   std::vector<Neighbours<d>> neighbours(cells.size());
   const auto key_of = [&](const HalfFacet &half) {
-    Facet<d> key = facet_of<d>(cells[static_cast<std::size_t>(half.cell)],
-                               static_cast<std::size_t>(half.facet));
+    Facet<d> key = facet_of<d>(cells[static_cast<std::size_t>(half.cell())],
+                               half.facet());
     std::sort(key.begin(), key.end());
     return key;
   };
@@ -33,8 +33,7 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
       const Facet<d> facet = facet_of<d>(cells[c], i);
       const auto v = static_cast<std::size_t>(
           *std::min_element(facet.begin(), facet.end()));
-      bucket[static_cast<std::size_t>(fill[v]++)] = {static_cast<Index>(c),
-                                                     static_cast<Index>(i)};
+      bucket[static_cast<std::size_t>(fill[v]++)] = HalfFacet(static_cast<Index>(c), i);
     }
   for (std::size_t v = 0; v < n_points; ++v)
     for (Index p = start[v]; p < start[v + 1]; ++p) {
@@ -44,10 +43,10 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
         const HalfFacet &two = bucket[static_cast<std::size_t>(q)];
         if (key_of(two) != key)
           continue;
-        HalfFacet &side = neighbours[one.cell][one.facet];
-        HalfFacet &other = neighbours[two.cell][two.facet];
-        if (side.cell != none || other.cell != none)
-          throw std::invalid_argument("a facet of cell " + std::to_string(one.cell) +
+        HalfFacet &side = neighbours[static_cast<std::size_t>(one.cell())][one.facet()];
+        HalfFacet &other = neighbours[static_cast<std::size_t>(two.cell())][two.facet()];
+        if (side.exists() || other.exists())
+          throw std::invalid_argument("a facet of cell " + std::to_string(one.cell()) +
                                       " is shared by more than two cells");
         side = two;
         other = one;

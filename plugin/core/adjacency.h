@@ -28,17 +28,29 @@ template <std::size_t d>
   }
 }
 
-/// A facet seen from one of its two cells.
-struct HalfFacet {
-  Index cell = none;
-  Index facet = none;
+/// A facet seen from one of its two cells, in one word: four facets a cell.
+class HalfFacet {
+public:
+  constexpr HalfFacet() = default;
+  constexpr HalfFacet(Index cell, std::size_t facet)
+      : code_(cell * 4 + static_cast<Index>(facet)) {}
+
+  /// `none` for the far side of a boundary facet.
+  [[nodiscard]] constexpr Index cell() const { return code_ >> 2; }
+  [[nodiscard]] constexpr std::size_t facet() const {
+    return static_cast<std::size_t>(code_ & 3);
+  }
+  [[nodiscard]] constexpr bool exists() const { return code_ >= 0; }
   friend bool operator==(const HalfFacet &, const HalfFacet &) = default;
+
+private:
+  Index code_ = none;
 };
 
 template <std::size_t d> using Neighbours = std::array<HalfFacet, d + 1>;
 
-/// For every cell and facet the half-facet on the other side, {none, none} at the
-/// boundary. @throws std::invalid_argument when three cells share a facet.
+/// For every cell and facet the half-facet on the other side, which does not exist
+/// at the boundary. @throws std::invalid_argument when three cells share a facet.
 template <std::size_t d>
 [[nodiscard]] std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
                                                    std::size_t n_points);

@@ -27,8 +27,8 @@ std::vector<HalfFacet> boundary_facets(const std::vector<Neighbours<d>> &neighbo
   std::vector<HalfFacet> out;
   for (std::size_t c = 0; c < neighbours.size(); ++c)
     for (std::size_t i = 0; i <= d; ++i)
-      if (neighbours[c][i].cell == none)
-        out.push_back({static_cast<Index>(c), static_cast<Index>(i)});
+      if (!neighbours[c][i].exists())
+        out.emplace_back(static_cast<Index>(c), i);
   return out;
 }
 
@@ -38,8 +38,8 @@ std::vector<Box<d>> facet_boxes(std::span<const Vector<d>> points,
                                 const std::vector<HalfFacet> &facets) {
   std::vector<Box<d>> boxes(facets.size());
   for (std::size_t k = 0; k < facets.size(); ++k)
-    for (Index v : facet_of<d>(cells[static_cast<std::size_t>(facets[k].cell)],
-                               static_cast<std::size_t>(facets[k].facet)))
+    for (Index v : facet_of<d>(cells[static_cast<std::size_t>(facets[k].cell())],
+                               facets[k].facet()))
       boxes[k].extend(points[static_cast<std::size_t>(v)]);
   return boxes;
 }
@@ -117,7 +117,7 @@ template <std::size_t d> Index Locator<d>::walk(const Vector<d> &x, Index start)
     bool crossed = false;
     for (std::size_t k = 0; k <= d && !crossed; ++k) {
       const std::size_t i = (k + static_cast<std::size_t>(step)) % (d + 1);
-      const Index beyond = neighbours_[static_cast<std::size_t>(cell)][i].cell;
+      const Index beyond = neighbours_[static_cast<std::size_t>(cell)][i].cell();
       if (beyond == previous && beyond != none)
         continue;
       Simplex<d> replaced = corners;
@@ -174,8 +174,8 @@ template <std::size_t d> Location<d> Locator<d>::nearest(const Vector<d> &x) con
   double best_distance = std::numeric_limits<double>::infinity();
   boundary_tree_.nearest(x, best_distance, [&](Index item, double) {
     const HalfFacet half = boundary_[static_cast<std::size_t>(item)];
-    const Cell<d> &cell = cells_[static_cast<std::size_t>(half.cell)];
-    const Facet<d> facet = facet_of<d>(cell, static_cast<std::size_t>(half.facet));
+    const Cell<d> &cell = cells_[static_cast<std::size_t>(half.cell())];
+    const Facet<d> facet = facet_of<d>(cell, half.facet());
     std::array<Vector<d>, d> corners;
     for (std::size_t i = 0; i < d; ++i)
       corners[i] = points_[static_cast<std::size_t>(facet[i])];
@@ -185,9 +185,9 @@ template <std::size_t d> Location<d> Locator<d>::nearest(const Vector<d> &x) con
       foot += weights[i] * corners[i];
     const double distance = (foot - x).squaredNorm();
     if (distance < best_distance ||
-        (distance == best_distance && half.cell < best.cell)) {
+        (distance == best_distance && half.cell() < best.cell)) {
       best_distance = distance;
-      best.cell = half.cell;
+      best.cell = half.cell();
       best.barycentric.fill(0);
       for (std::size_t i = 0; i < d; ++i)
         best.barycentric[static_cast<std::size_t>(

@@ -5,6 +5,8 @@
 
 namespace anistar::bindings {
 
+void bind_gradation(nanobind::module_ &module);
 void bind_locator(nanobind::module_ &module);
+void bind_remesh(nanobind::module_ &module);
 
 } // namespace anistar::bindings

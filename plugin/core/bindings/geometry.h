@@ -9,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace anistar::bindings {
 
@@ -35,6 +36,34 @@ template <std::size_t d>
     throw std::invalid_argument("facets have " + std::to_string(array.shape(1)) +
                                 " columns, expected " + std::to_string(d));
   return {reinterpret_cast<const Facet<d> *>(array.data()), array.shape(0)};
+}
+
+[[nodiscard]] inline std::span<const Index> indices_of(const Array1<Index> &array) {
+  return {array.data(), array.shape(0)};
+}
+
+template <std::size_t d>
+[[nodiscard]] std::vector<SymmetricTensor<d>> tensors_of(const Array3<double> &array) {
+  if (array.shape(1) != d || array.shape(2) != d)
+    throw std::invalid_argument("metric is not of shape (n, " + std::to_string(d) +
+                                ", " + std::to_string(d) + ")");
+  std::vector<SymmetricTensor<d>> out(array.shape(0));
+  const double *entry = array.data();
+  for (SymmetricTensor<d> &M : out)
+    for (std::size_t i = 0; i < d; ++i)
+      for (std::size_t j = 0; j < d; ++j, ++entry)
+        if (j <= i)
+          M(i, j) = *entry;
+  return out;
+}
+
+/// Rows of plain numbers as an (n, width) array.
+template <class T, std::size_t width, class Row>
+[[nodiscard]] auto rows(const std::vector<Row> &values) {
+  static_assert(sizeof(Row) == width * sizeof(T));
+  const T *data = reinterpret_cast<const T *>(values.data());
+  return owned(std::vector<T>(data, data + values.size() * width),
+               {values.size(), width});
 }
 
 } // namespace anistar::bindings

@@ -1,0 +1,278 @@
+"""Remeshing: from a mesh and a metric to a mesh with unit edges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .errors import MeshingError
+from .mesh import Mesh
+from .metric import check_metric
+from .topology import cell_volumes, facet_measures, measure_by_tag
+
+Float = NDArray[np.float64]
+Int = NDArray[np.int32]
+
+Project = Callable[[Float, int], ArrayLike]
+"""``project(points, facet_tag)``: the (k, d) points moved onto the user's geometry."""
+
+Callback = Callable[[str, float], object]
+"""``callback(phase, fraction)``, called now and then; an exception it raises ends the call."""
+
+UNLIMITED = 2**62
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RemeshOptions:
+    """How to remesh; the metric itself is taken as it is given.
+
+    Parameters
+    ----------
+    max_vertices : int, optional
+        Refinement stops there; the mesh is valid but ``report.converged`` is False.
+    max_seconds : float, optional
+        The call stops after this wall time with the mesh it has by then.
+    frozen_tags : sequence of int
+        Facets with these tags are kept as they are.
+    ridge_angle : float
+        Degrees; the boundary has a corner where it turns by at least this.
+    hausdorff_number : float
+        Distance of a curve from an edge along it, relative to the edge's length; longer edges
+        are split whatever the metric says.
+    callback : callable, optional
+        ``callback(phase, fraction)`` for progress; raise in it to interrupt.
+    """
+
+    max_vertices: int | None = None
+    max_seconds: float | None = None
+    frozen_tags: Sequence[int] = ()
+    ridge_angle: float = 45.0
+    hausdorff_number: float = 0.1
+    callback: Callback | None = None
+
+    def __post_init__(self) -> None:
+        if self.max_vertices is not None and self.max_vertices < 3:
+            raise ValueError(f"max_vertices must be at least 3, got {self.max_vertices}")
+        if self.max_seconds is not None and not self.max_seconds > 0:
+            raise ValueError(f"max_seconds must be positive, got {self.max_seconds}")
+        if not 0 < self.ridge_angle <= 180:
+            raise ValueError(f"ridge_angle must be in (0, 180] degrees, got {self.ridge_angle}")
+        if not 0 < self.hausdorff_number <= 1:
+            raise ValueError(f"hausdorff_number must be in (0, 1], got {self.hausdorff_number}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TagMeasure:
+    """Length, area or volume that a tag carries, in the geometry and in the new mesh."""
+
+    dim: int
+    tag: int
+    name: str
+    before: float
+    after: float
+
+    @property
+    def change(self) -> float:
+        """Relative change of the measure."""
+        return self.after / self.before - 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RemeshReport:
+    """What `remesh` did and how good the result is.
+
+    Attributes
+    ----------
+    converged : bool
+        The run ended by itself, not by a budget.
+    stop_reason : str
+        ``finished``, ``max_vertices`` or ``max_seconds``.
+    n_points, n_cells : int
+        Size of the new mesh.
+    statistics : dict
+        ``edge_unit`` (fraction of edges within [1/sqrt 2, sqrt 2]), ``edge_min``, ``edge_mean``,
+        ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
+        ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
+    tags : tuple of TagMeasure
+        Measure of every facet and region tag against the geometry.
+    counts : dict of str to float
+        Operations made.
+    seconds : dict of str to float
+        Wall time of each phase.
+    """
+
+    converged: bool
+    stop_reason: str
+    n_points: int
+    n_cells: int
+    statistics: dict[str, Any]
+    tags: tuple[TagMeasure, ...]
+    counts: dict[str, float]
+    seconds: dict[str, float]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the report as JSON builtins."""
+        out = asdict(self)
+        out["tags"] = [{**asdict(tag), "change": tag.change} for tag in self.tags]
+        return out
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Remeshed:
+    """A new mesh, the metric at its points, and the report.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    metric : (n, d, d) float64
+        The given metric, interpolated at the new points (P1 of its logarithm).
+    report : RemeshReport
+    """
+
+    mesh: Mesh
+    metric: Float
+    report: RemeshReport
+
+
+def remesh(
+    mesh: Mesh,
+    M: ArrayLike,
+    options: RemeshOptions | None = None,
+    *,
+    geometry: Mesh | None = None,
+    project: Project | None = None,
+) -> Remeshed:
+    """Return a mesh of the same domain whose edges have length one in the metric.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Carries the metric: P1 interpolation of its logarithm.
+    M : (n, d, d) array
+        Metric at the points of `mesh`, in 1 / length**2. It is taken as given: no bounds,
+        no gradation, no scaling.
+    options : RemeshOptions, optional
+    geometry : Mesh, optional
+        The mesh whose facets are the shape of the domain, `mesh` by default. Loops give the
+        first mesh, so that curved boundaries do not drift.
+    project : callable, optional
+        ``project(points, facet_tag)`` moves new points on curves onto the true geometry.
+
+    Returns
+    -------
+    Remeshed
+
+    Raises
+    ------
+    MetricError
+        If a tensor is not symmetric positive definite; the point is named.
+    MeshingError
+        If the facets of the geometry cross, or a tag would be lost.
+
+    References
+    ----------
+    .. [1] Loseille, Loehner, Cavity-based operators for mesh adaptation, 2013.
+    .. [2] Bossen, Heckbert, A pliant method for anisotropic mesh generation, 1996.
+    """
+    options = RemeshOptions() if options is None else options
+    geometry = mesh if geometry is None else geometry
+    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
+    if mesh.dim != 2 or geometry.dim != 2:
+        raise ValueError(f"remesh works on 2D meshes; this one has dimension {mesh.dim}")
+    _check_frozen(options.frozen_tags, geometry)
+    try:
+        raw = _core.remesh2(
+            mesh.points,
+            mesh.cells,
+            metric,
+            geometry.points,
+            geometry.cells,
+            geometry.cell_tags,
+            geometry.facets,
+            geometry.facet_tags,
+            geometry.corners,
+            np.array(options.frozen_tags, dtype=np.int32),
+            options.ridge_angle,
+            options.hausdorff_number,
+            UNLIMITED if options.max_vertices is None else options.max_vertices,
+            np.inf if options.max_seconds is None else options.max_seconds,
+            None if project is None else _pointwise(project),
+            options.callback,
+        )
+    except _core.MeshingError as error:
+        raise MeshingError(str(error)) from None
+    new = Mesh._trusted(
+        points=raw["points"],
+        cells=raw["cells"],
+        cell_tags=raw["cell_tags"],
+        facets=raw["facets"],
+        facet_tags=raw["facet_tags"],
+        corners=_same_points(geometry.points[geometry.corners], raw["points"]),
+        names={**mesh.names, **geometry.names},
+    )
+    report = RemeshReport(
+        converged=raw["stop_reason"] == "finished",
+        stop_reason=raw["stop_reason"],
+        n_points=new.n_points,
+        n_cells=new.n_cells,
+        statistics=raw["statistics"],
+        tags=_tag_measures(geometry, new),
+        counts=raw["counts"],
+        seconds=raw["seconds"],
+    )
+    return Remeshed(new, raw["metric"], report)
+
+
+def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:
+    unknown = sorted(set(frozen) - set(geometry.facet_tags.tolist()))
+    if unknown:
+        raise ValueError(f"frozen_tags: no facet of the geometry has tag {unknown[0]}")
+
+
+def _pointwise(project: Project) -> Callable[[float, float, int], tuple[float, float]]:
+    """Call the user's vectorised projection for one point, and check what it returns."""
+
+    def at(x: float, y: float, tag: int) -> tuple[float, float]:
+        moved = np.asarray(project(np.array([[x, y]]), tag), dtype=np.float64)
+        if moved.shape != (1, 2) or not np.isfinite(moved).all():
+            raise ValueError(f"project must return finite points of shape (1, 2), got {moved!r}")
+        return float(moved[0, 0]), float(moved[0, 1])
+
+    return at
+
+
+def _same_points(wanted: Float, points: Float) -> Int:
+    """Return the index in `points` of every row of `wanted`, which occurs there bit by bit."""
+    if len(wanted) == 0:
+        return np.zeros(0, np.int32)
+    row = np.dtype((np.void, points.dtype.itemsize * points.shape[1]))
+    keys = np.ascontiguousarray(points).view(row).ravel()
+    found = np.flatnonzero(np.isin(keys, np.ascontiguousarray(wanted).view(row).ravel()))
+    return found.astype(np.int32)
+
+
+def _tag_measures(geometry: Mesh, new: Mesh) -> tuple[TagMeasure, ...]:
+    """Compare what every tag carries; a tag that is gone is an error."""
+    found = []
+    for dim, kind in ((geometry.dim - 1, "facet"), (geometry.dim, "cell")):
+        before, after = (_measures(mesh, kind) for mesh in (geometry, new))
+        lost = sorted(set(before) - set(after))
+        if lost:
+            raise MeshingError(f"the new mesh lost {kind} tag {lost[0]}")
+        for tag, measure in before.items():
+            name = geometry.names.get((dim, tag), "")
+            found.append(
+                TagMeasure(dim=dim, tag=tag, name=name, before=measure, after=after[tag])
+            )
+    return tuple(found)
+
+
+def _measures(mesh: Mesh, kind: str) -> dict[int, float]:
+    if kind == "facet":
+        return measure_by_tag(facet_measures(mesh.points, mesh.facets), mesh.facet_tags)
+    return measure_by_tag(cell_volumes(mesh.points, mesh.cells), mesh.cell_tags)

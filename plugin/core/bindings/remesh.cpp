@@ -1,0 +1,130 @@
+#include "../remesh.h"
+#include "bind.h"
+#include "geometry.h"
+
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace anistar::bindings {
+namespace {
+
+/// Points (n, d) and full tensors (n, d, d) of vertices.
+template <std::size_t d>
+void put_vertices(nb::dict &result, const std::vector<Vertex<d>> &vertices) {
+  std::vector<double> points, metric;
+  points.reserve(vertices.size() * d);
+  metric.reserve(vertices.size() * d * d);
+  for (const Vertex<d> &v : vertices) {
+    points.insert(points.end(), v.x.data(), v.x.data() + d);
+    for (std::size_t i = 0; i < d; ++i)
+      for (std::size_t j = 0; j < d; ++j)
+        metric.push_back(v.M(i, j));
+  }
+  result["points"] = owned(std::move(points), {vertices.size(), d});
+  result["metric"] = owned(std::move(metric), {vertices.size(), d, d});
+}
+
+[[nodiscard]] nb::dict as_dict(const Statistics &statistics) {
+  const std::span bins(Statistics::length_bins);
+  nb::dict out;
+  out["edges"] = statistics.n_edges;
+  out["edge_unit"] = statistics.unit_fraction;
+  out["edge_min"] = statistics.length_min;
+  out["edge_mean"] = statistics.length_mean;
+  out["edge_max"] = statistics.length_max;
+  out["edge_bins"] = std::vector<double>(bins.begin(), bins.end());
+  out["edge_histogram"] = statistics.length_histogram;
+  out["q_min"] = statistics.quality_min;
+  out["q_mean"] = statistics.quality_mean;
+  out["q_histogram"] = statistics.quality_histogram;
+  return out;
+}
+
+/// Tells Python about progress and lets it interrupt: Ctrl-C, or an exception in the
+/// user's callback, unwinds the core.
+/// A handle, not an object: it is copied and destroyed while the GIL is released.
+Monitor::Progress progress_of(nb::handle callback) {
+  return [callback](const std::string &phase, double fraction) {
+    nb::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0)
+      throw nb::python_error();
+    if (!callback.is_none())
+      callback(phase, fraction);
+  };
+}
+
+Projection projection_of(nb::handle project) {
+  if (project.is_none())
+    return {};
+  return [project](const Vector<2> &x, Index tag) -> Vector<2> {
+    nb::gil_scoped_acquire acquire;
+    const auto moved = nb::cast<std::pair<double, double>>(project(x[0], x[1], tag));
+    return {moved.first, moved.second};
+  };
+}
+
+nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
+                 const Array3<double> &metric, const Array2<double> &geometry_points,
+                 const Array2<Index> &geometry_cells,
+                 const Array1<Index> &geometry_cell_tags,
+                 const Array2<Index> &geometry_facets,
+                 const Array1<Index> &geometry_facet_tags,
+                 const Array1<Index> &corners, const Array1<Index> &frozen_tags,
+                 double ridge_angle, double hausdorff_number, std::size_t max_vertices,
+                 double max_seconds, const nb::object &project,
+                 const nb::object &callback) {
+  const auto tensors = tensors_of<2>(metric);
+  const GeometryInput geometry{points_of<2>(geometry_points),
+                               cells_of<2>(geometry_cells),
+                               indices_of(geometry_cell_tags),
+                               facets_of<2>(geometry_facets),
+                               indices_of(geometry_facet_tags),
+                               indices_of(corners),
+                               indices_of(frozen_tags),
+                               ridge_angle};
+  RemeshSettings settings;
+  settings.hausdorff_number = hausdorff_number;
+  settings.max_vertices = max_vertices;
+  settings.max_seconds = max_seconds;
+  const Projection projection = projection_of(project);
+  RemeshResult out;
+  {
+    nb::gil_scoped_release release;
+    const Background<2> background(points_of<2>(points), cells_of<2>(cells), tensors);
+    out = remesh(background, geometry, projection, settings, progress_of(callback));
+  }
+  nb::dict result;
+  put_vertices<2>(result, out.vertices);
+  result["cells"] = rows<Index, 3>(out.cells);
+  result["cell_tags"] = owned(std::move(out.cell_tags), {out.cells.size()});
+  result["facets"] = rows<Index, 2>(out.facets);
+  result["facet_tags"] = owned(std::move(out.facet_tags), {out.facets.size()});
+  result["statistics"] = as_dict(out.statistics);
+  result["counts"] = out.counts;
+  result["seconds"] = out.seconds;
+  result["stop_reason"] = name_of(out.reason);
+  return result;
+}
+
+} // namespace
+
+void bind_remesh(nb::module_ &module) {
+  nb::exception<MeshingError>(module, "MeshingError", PyExc_RuntimeError);
+  module.def("remesh2", &remesh2, nb::arg("points").noconvert(),
+             nb::arg("cells").noconvert(), nb::arg("metric").noconvert(),
+             nb::arg("geometry_points").noconvert(),
+             nb::arg("geometry_cells").noconvert(),
+             nb::arg("geometry_cell_tags").noconvert(),
+             nb::arg("geometry_facets").noconvert(),
+             nb::arg("geometry_facet_tags").noconvert(),
+             nb::arg("corners").noconvert(), nb::arg("frozen_tags").noconvert(),
+             nb::arg("ridge_angle"), nb::arg("hausdorff_number"),
+             nb::arg("max_vertices"), nb::arg("max_seconds"),
+             nb::arg("project").none(), nb::arg("callback").none(),
+             "A mesh of the geometry with unit edges in the metric that the mesh "
+             "(points, cells) carries.");
+}
+
+} // namespace anistar::bindings

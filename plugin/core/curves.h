@@ -1,0 +1,75 @@
+#pragma once
+// The boundary and the interfaces of a 2D domain as smooth curves between corners.
+
+#include "adjacency.h"
+#include "tensor.h"
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace anistar {
+
+/// Moves a point onto the user's own geometry; gets the point and the facet tag.
+using Projection = std::function<Vector<2>(const Vector<2> &, Index)>;
+
+/// What the user gave: a mesh whose facets are the geometry.
+struct GeometryInput {
+  std::span<const Vector<2>> points;
+  std::span<const Cell<2>> cells;
+  std::span<const Index> cell_tags;
+  std::span<const Facet<2>> facets;
+  std::span<const Index> facet_tags;
+  std::span<const Index> corners;     ///< points that must stay
+  std::span<const Index> frozen_tags; ///< facets with these tags are kept as they are
+  double ridge_angle = 45;            ///< degrees; a sharper turn is a corner
+};
+
+/// No region: the outside of the domain.
+inline constexpr Index no_region = -1;
+
+/// A chain of facets with one tag and the same regions on its two sides. The curve is C1:
+/// cubic Hermite between the geometry's points with the tangents of the circles through
+/// three of them, exact where three points lie on a line.
+class Curve {
+public:
+  std::vector<Index> vertices;   ///< geometry points; front == back on a loop
+  Index tag = 0;
+  Index left = no_region, right = no_region; ///< cell tags beside it
+  bool is_frozen = false;
+  bool is_loop = false; ///< closed, without a corner
+
+  [[nodiscard]] std::size_t n_segments() const { return vertices.size() - 1; }
+
+  /// The point at parameter t: segment floor(t), fraction t - floor(t).
+  [[nodiscard]] Vector<2> at(double t) const;
+  /// d at / dt.
+  [[nodiscard]] Vector<2> derivative(double t) const;
+
+  /// Fixes the shape. @pre `points` hold the positions of `vertices`.
+  void fit(std::vector<Vector<2>> points, const Projection *projection);
+  /// Replaces segment k by its chord.
+  void straighten(std::size_t k) { is_straight_[k] = true; }
+
+private:
+  std::vector<Vector<2>> points_;
+  std::vector<Vector<2>> start_, end_; ///< Hermite derivatives of each segment
+  std::vector<bool> is_straight_;
+  const Projection *projection_ = nullptr;
+};
+
+/// A point that must stay, and where it is in the geometry.
+struct Geometry {
+  std::vector<Vector<2>> points;
+  std::vector<Curve> curves;
+  std::vector<bool> is_corner; ///< per point of the geometry
+};
+
+/// Cuts the facets into curves at corners: where other than two facets meet, tags or
+/// regions change, the chain turns by more than the ridge angle, two straight runs meet,
+/// or the caller says so.
+/// @throws std::invalid_argument for a facet that is no facet of a cell.
+[[nodiscard]] Geometry make_geometry(const GeometryInput &input,
+                                     const Projection *projection);
+
+} // namespace anistar

@@ -1,0 +1,64 @@
+#pragma once
+// The edits of a mesh on its curves, each one cavity of the cavity operator.
+
+#include "background.h"
+#include "cavity.h"
+#include "curves.h"
+#include "start.h"
+
+namespace anistar {
+
+/// Everything an edit needs.
+struct Workspace {
+  MeshOnCurves &on_curves;
+  const Geometry &geometry;
+  const Background<2> &background;
+  double hausdorff;
+  Triangulation<2> &mesh = on_curves.mesh;
+  Cavity<2> cavity{mesh};
+
+  [[nodiscard]] const CurveEdge &curve_edge(HalfFacet h) const {
+    return on_curves.curve_edges[static_cast<std::size_t>(mesh.constraint(h))];
+  }
+  [[nodiscard]] const Curve &curve(const CurveEdge &edge) const {
+    return geometry.curves[static_cast<std::size_t>(edge.curve)];
+  }
+  [[nodiscard]] double length(HalfFacet edge) const {
+    const auto [a, b] = mesh.facet(edge);
+    return edge_length(mesh.vertex(a), mesh.vertex(b));
+  }
+};
+
+/// What a walk through the mesh met.
+struct Walk {
+  Index cell = none; ///< where the point is, none when it was stopped
+  HalfFacet wall;    ///< by this constrained edge, if it exists
+};
+
+/// Walks from a cell towards x without crossing a constraint.
+[[nodiscard]] Walk walk_to(const Triangulation<2> &mesh, Index start,
+                           const Vector<2> &x);
+
+/// Inserts an interior vertex into the cell that contains it. @returns the vertex, none
+/// when it lies too near to an edge. The new cells are workspace.cavity.star().
+[[nodiscard]] Index insert_in_cell(Workspace &w, Index cell, const Vertex<2> &vertex,
+                                   Index background_cell);
+
+/// Splits an edge in its middle: on the curve if it is constrained. @returns the new
+/// vertex, none when the edge is frozen or the curve cannot be followed validly.
+[[nodiscard]] Index split_edge(Workspace &w, HalfFacet edge);
+
+/// Bounds w.cavity for the removal of v into its neighbour `target`.
+/// @returns false when that is not valid: v is a corner, leaves its curve, or a cell
+/// would be inverted. `ridge` gets the constraint of the edge that closes the curve.
+struct Collapse {
+  Index vertex, target;
+  std::vector<HalfFacet> star;                ///< scratch
+  std::vector<HalfFacet> skipped;             ///< boundary edges that vanish
+  std::vector<RidgeConstraint<2>> ridges;     ///< the merged curve edge
+  CurveEdge merged{};                         ///< valid when ridges is not empty
+};
+[[nodiscard]] bool bound_collapse(Workspace &w, Collapse &collapse);
+void fill_collapse(Workspace &w, Collapse &collapse);
+
+} // namespace anistar

@@ -1,0 +1,60 @@
+#pragma once
+// Lengths and qualities in a metric, as every report defines them.
+
+#include "adjacency.h"
+#include "predicates.h"
+#include "tensor.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+namespace anistar {
+
+/// Edges within [1/sqrt 2, sqrt 2] are unit edges.
+inline constexpr double shortest_unit = std::numbers::sqrt2 / 2;
+inline constexpr double longest_unit = std::numbers::sqrt2;
+
+/// What a metric mesher knows of a vertex.
+template <std::size_t d> struct Vertex {
+  Vector<d> x;
+  SymmetricTensor<d> M;
+  double weight = 1; ///< 1 / sqrt(det M): M * weight has determinant 1 in 2D
+};
+
+template <std::size_t d>
+[[nodiscard]] Vertex<d> make_vertex(const Vector<d> &x, const SymmetricTensor<d> &M) {
+  return {x, M, 1 / std::sqrt(determinant<d>(M))};
+}
+
+/// Mean of the lengths la, lb of an edge in the metrics of its ends, for a size that
+/// varies geometrically in between.
+[[nodiscard]] inline double mean_length(double la, double lb) {
+  const double difference = la - lb, sum = la + lb;
+  // the next term of the series is below 1e-9 here
+  if (std::abs(difference) < 2e-2 * sum) {
+    const double r = difference / sum;
+    return .5 * sum * (1 - r * r / 3);
+  }
+  return difference / std::log(la / lb);
+}
+
+template <std::size_t d>
+[[nodiscard]] inline double edge_length(const Vertex<d> &a, const Vertex<d> &b) {
+  const Vector<d> e = b.x - a.x;
+  return mean_length(std::sqrt(quadratic<d>(a.M, e)), std::sqrt(quadratic<d>(b.M, e)));
+}
+
+/// The mean ratio of a simplex in the metric of the corner where it is densest: 1 for a
+/// unit regular simplex, <= 0 when inverted.
+[[nodiscard]] inline double quality(const Vertex<2> &a, const Vertex<2> &b,
+                                    const Vertex<2> &c) {
+  const Vector<2> u = b.x - a.x, v = c.x - a.x, w = c.x - b.x;
+  const Vertex<2> &dense = a.weight <= b.weight ? (a.weight <= c.weight ? a : c)
+                                                : (b.weight <= c.weight ? b : c);
+  const double squares = quadratic<2>(dense.M, u) + quadratic<2>(dense.M, v) +
+                         quadratic<2>(dense.M, w);
+  return 2 * std::numbers::sqrt3 * cross(u, v) / (dense.weight * squares);
+}
+
+} // namespace anistar

@@ -1,0 +1,277 @@
+#include "outline.h"
+
+#include "box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace anistar {
+namespace {
+
+/// Pieces of a curve over which its metric length is taken by the trapezium-like rule of
+/// mean_length: short against the unit edge.
+constexpr double sample_length = .25;
+constexpr int max_sample_depth = 24;
+/// Chords are bisected at most this often to meet the Hausdorff bound.
+constexpr int max_bisections = 16;
+
+/// A curve's metric length, tabulated.
+struct LengthTable {
+  std::vector<double> parameter{0}, length{0};
+
+  [[nodiscard]] double total() const { return length.back(); }
+  [[nodiscard]] double parameter_at(double s) const {
+    const auto above = std::upper_bound(length.begin() + 1, length.end() - 1, s);
+    const auto k = static_cast<std::size_t>(above - length.begin());
+    const double width = length[k] - length[k - 1];
+    const double r = width > 0 ? (s - length[k - 1]) / width : 0;
+    return parameter[k - 1] + r * (parameter[k] - parameter[k - 1]);
+  }
+};
+
+struct Sampler {
+  const Curve &curve;
+  const Background<2> &background;
+  double limit; ///< metric length beyond which the request is absurd
+  LengthTable table{};
+  Index hint = none;
+
+  Vertex<2> sample(double t) { return background.vertex(curve.at(t), hint); }
+
+  void piece(double t0, const Vertex<2> &a, double t1, const Vertex<2> &b, int depth) {
+    const double whole = edge_length(a, b);
+    const double t = .5 * (t0 + t1);
+    if (depth < max_sample_depth && table.total() < limit) {
+      const Vertex<2> m = sample(t);
+      const double halves = edge_length(a, m) + edge_length(m, b);
+      if (halves > sample_length || std::abs(halves - whole) > .05 * sample_length) {
+        piece(t0, a, t, m, depth + 1);
+        piece(t, m, t1, b, depth + 1);
+        return;
+      }
+    }
+    table.parameter.push_back(t1);
+    table.length.push_back(table.total() + whole);
+  }
+
+  LengthTable run() {
+    Vertex<2> a = sample(0);
+    for (std::size_t k = 0; k < curve.n_segments(); ++k) {
+      const double t = static_cast<double>(k);
+      const Vertex<2> b = sample(t + 1);
+      piece(t, a, t + 1, b, 0);
+      a = b;
+    }
+    return std::move(table);
+  }
+};
+
+void bisect_to_bound(const Curve &curve, double t0, double t1, double hausdorff,
+                     int depth, std::vector<double> &cuts) {
+  if (depth < max_bisections && relative_sagitta(curve, t0, t1) > hausdorff) {
+    const double t = middle(curve, t0, t1);
+    bisect_to_bound(curve, t0, t, hausdorff, depth + 1, cuts);
+    bisect_to_bound(curve, t, t1, hausdorff, depth + 1, cuts);
+  } else {
+    cuts.push_back(t1);
+  }
+}
+
+/// Parameters of the vertices of a curve, from 0 to its end.
+std::vector<double> cut(const Curve &curve, const LengthTable &table,
+                        double hausdorff) {
+  const double end = static_cast<double>(curve.n_segments());
+  std::vector<double> unit{0};
+  if (curve.is_frozen) {
+    for (std::size_t k = 1; k <= curve.n_segments(); ++k)
+      unit.push_back(static_cast<double>(k));
+    return unit;
+  }
+  const double fewest = curve.is_loop ? 3 : 1;
+  const double n = std::max(fewest, std::round(table.total()));
+  for (double k = 1; k < n; ++k)
+    unit.push_back(table.parameter_at(table.total() * k / n));
+  unit.push_back(end);
+  std::vector<double> cuts{0};
+  for (std::size_t k = 0; k + 1 < unit.size(); ++k)
+    bisect_to_bound(curve, unit[k], unit[k + 1], hausdorff, 0, cuts);
+  return cuts;
+}
+
+bool between(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p) {
+  return std::min(a[0], b[0]) <= p[0] && p[0] <= std::max(a[0], b[0]) &&
+         std::min(a[1], b[1]) <= p[1] && p[1] <= std::max(a[1], b[1]);
+}
+
+/// Whether p lies on the closed segment ab.
+bool is_on(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p) {
+  return orientation(a, b, p) == Orientation::degenerate && between(a, b, p);
+}
+
+bool segments_meet(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p,
+                   const Vector<2> &q) {
+  const Orientation abp = orientation(a, b, p), abq = orientation(a, b, q);
+  const Orientation pqa = orientation(p, q, a), pqb = orientation(p, q, b);
+  if (abp != abq && pqa != pqb && abp != Orientation::degenerate &&
+      abq != Orientation::degenerate && pqa != Orientation::degenerate &&
+      pqb != Orientation::degenerate)
+    return true;
+  return is_on(a, b, p) || is_on(a, b, q) || is_on(p, q, a) || is_on(p, q, b);
+}
+
+} // namespace
+
+double middle(const Curve &curve, double t0, double t1) {
+  const Vector<2> a = curve.at(t0), b = curve.at(t1);
+  double low = t0, high = t1;
+  for (int step = 0; step < 30; ++step) {
+    const double t = .5 * (low + high);
+    const Vector<2> x = curve.at(t);
+    ((x - a).squaredNorm() < (x - b).squaredNorm() ? low : high) = t;
+  }
+  return .5 * (low + high);
+}
+
+double relative_sagitta(const Curve &curve, double t0, double t1) {
+  const Vector<2> a = curve.at(t0), chord = curve.at(t1) - a;
+  const double length = chord.norm();
+  if (!(length > 0))
+    return std::numeric_limits<double>::infinity();
+  double worst = 0;
+  const auto consider = [&](double t) {
+    const Vector<2> r = curve.at(t) - a;
+    const double along = r.dot(chord) / length;
+    const double past = std::max({0., -along, along - length});
+    worst = std::max(worst, std::hypot(cross(chord, r) / length, past) / length);
+  };
+  for (double k = 1; k < 4; ++k)
+    consider(t0 + (t1 - t0) * k / 4);
+  // an edge over many points of the geometry is compared with all of them
+  for (double t = std::floor(t0) + 1; t < t1; ++t)
+    consider(t);
+  return worst;
+}
+
+Outline make_outline(const Geometry &geometry, const Background<2> &background,
+                     double hausdorff, const Monitor &monitor) {
+  Outline outline;
+  std::vector<Index> vertex_of(geometry.points.size(), none);
+  const auto add = [&](const Vector<2> &x, Index feature) {
+    Index cell = outline.background.empty() ? none : outline.background.back();
+    outline.vertices.push_back(background.vertex(x, cell));
+    outline.background.push_back(cell);
+    outline.feature.push_back(feature);
+    return static_cast<Index>(outline.vertices.size()) - 1;
+  };
+  const auto fixed = [&](Index v) {
+    Index &known = vertex_of[static_cast<std::size_t>(v)];
+    if (known == none)
+      known = add(geometry.points[static_cast<std::size_t>(v)],
+                  Triangulation<2>::corner);
+    return known;
+  };
+  for (std::size_t v = 0; v < geometry.points.size(); ++v)
+    if (geometry.is_corner[v])
+      (void)fixed(static_cast<Index>(v));
+  for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
+    const Curve &curve = geometry.curves[c];
+    const LengthTable table = Sampler{curve, background, 1e9}.run();
+    if (!(table.total() < 1e9) ||
+        !monitor.has_room(outline.vertices.size() +
+                          static_cast<std::size_t>(table.total())))
+      throw MeshingError("the metric asks for " + std::to_string(table.total()) +
+                         " edges on a curve with tag " + std::to_string(curve.tag) +
+                         ", more than max_vertices allows");
+    const std::vector<double> t = cut(curve, table, hausdorff);
+    // the seam of a loop stays: a parameter must begin somewhere
+    Index previous = fixed(curve.vertices.front());
+    for (std::size_t k = 1; k < t.size(); ++k) {
+      const bool is_last = k + 1 == t.size();
+      const Index next =
+          is_last ? fixed(curve.vertices.back())
+                  : add(curve.at(t[k]), curve.is_frozen ? Triangulation<2>::corner : 1);
+      outline.edges.push_back(
+          {static_cast<Index>(c), t[k - 1], t[k], previous, next});
+      previous = next;
+    }
+  }
+  return outline;
+}
+
+bool retreat(Geometry &geometry, const Background<2> &background, Outline &outline,
+             const std::vector<Index> &edges) {
+  bool changed = false;
+  const auto move = [&](Index v, const Vector<2> &x) {
+    const auto i = static_cast<std::size_t>(v);
+    changed = changed || outline.vertices[i].x != x;
+    outline.vertices[i] = background.vertex(x, outline.background[i]);
+  };
+  for (Index e : edges) {
+    const CurveEdge edge = outline.edges[static_cast<std::size_t>(e)];
+    Curve &curve = geometry.curves[static_cast<std::size_t>(edge.curve)];
+    const double first = std::floor(edge.t0) + 1, last = std::ceil(edge.t1) - 1;
+    if (first <= last) {
+      const double t = std::floor(.5 * (first + last));
+      Index cell = outline.background[static_cast<std::size_t>(edge.v0)];
+      outline.vertices.push_back(background.vertex(curve.at(t), cell));
+      outline.background.push_back(cell);
+      outline.feature.push_back(1);
+      const auto v = static_cast<Index>(outline.vertices.size()) - 1;
+      outline.edges[static_cast<std::size_t>(e)] = {edge.curve, edge.t0, t, edge.v0, v};
+      outline.edges.push_back({edge.curve, t, edge.t1, v, edge.v1});
+      changed = true;
+    } else {
+      const double segment = std::floor(edge.t0);
+      curve.straighten(static_cast<std::size_t>(segment));
+      for (const CurveEdge &other : outline.edges)
+        if (other.curve == edge.curve)
+          for (const auto &[v, t] : {std::pair(other.v0, other.t0), {other.v1, other.t1}})
+            if (segment < t && t < segment + 1)
+              move(v, curve.at(t));
+    }
+  }
+  return changed;
+}
+
+std::vector<Index> conflicts(const Outline &outline) {
+  std::vector<Box<2>> boxes(outline.edges.size());
+  const auto x = [&](Index v) -> const Vector<2> & {
+    return outline.vertices[static_cast<std::size_t>(v)].x;
+  };
+  for (std::size_t e = 0; e < boxes.size(); ++e) {
+    boxes[e].extend(x(outline.edges[e].v0));
+    boxes[e].extend(x(outline.edges[e].v1));
+  }
+  const BoxTree<2> tree(boxes);
+  std::vector<Index> found;
+  for (std::size_t e = 0; e < boxes.size(); ++e) {
+    const CurveEdge &one = outline.edges[e];
+    bool clashes = x(one.v0) == x(one.v1);
+    tree.meeting(boxes[e], [&](Index item) {
+      const CurveEdge &two = outline.edges[static_cast<std::size_t>(item)];
+      if (static_cast<std::size_t>(item) == e)
+        return true;
+      const bool common0 = one.v0 == two.v0 || one.v0 == two.v1;
+      const bool common1 = one.v1 == two.v0 || one.v1 == two.v1;
+      if (common0 && common1) {
+        clashes = true;
+      } else if (common0 || common1) {
+        const Index mine = common0 ? one.v1 : one.v0;
+        const Index shared = common0 ? one.v0 : one.v1;
+        const Index other = two.v0 == shared ? two.v1 : two.v0;
+        clashes = clashes || is_on(x(two.v0), x(two.v1), x(mine)) ||
+                  is_on(x(one.v0), x(one.v1), x(other));
+      } else {
+        clashes =
+            clashes || segments_meet(x(one.v0), x(one.v1), x(two.v0), x(two.v1));
+      }
+      return !clashes;
+    });
+    if (clashes)
+      found.push_back(static_cast<Index>(e));
+  }
+  return found;
+}
+
+} // namespace anistar

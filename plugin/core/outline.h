@@ -1,0 +1,51 @@
+#pragma once
+// The curves of a domain, cut into edges of unit metric length.
+
+#include "background.h"
+#include "curves.h"
+#include "monitor.h"
+#include "triangulation.h"
+
+#include <vector>
+
+namespace anistar {
+
+/// An edge of the mesh that is part of a curve, in the direction of the curve: what the
+/// constraint of a facet refers to.
+struct CurveEdge {
+  Index curve;
+  double t0, t1; ///< curve parameters of its ends
+  Index v0, v1;
+};
+
+/// Vertices and edges on the curves, plus the points that must stay.
+struct Outline {
+  std::vector<Vertex<2>> vertices;
+  std::vector<Index> feature;    ///< dimension of the feature a vertex lies on
+  std::vector<Index> background; ///< where its metric was found
+  std::vector<CurveEdge> edges;
+};
+
+/// Cuts every curve into edges of equal metric length near 1, none of which leaves the
+/// curve by more than `hausdorff` times its own length; frozen curves keep their points.
+/// @throws MeshingError when the metric asks for more vertices than the monitor allows.
+[[nodiscard]] Outline make_outline(const Geometry &geometry,
+                                   const Background<2> &background, double hausdorff,
+                                   const Monitor &monitor);
+
+/// The parameter at which the curve is equally far from the two ends of the edge.
+[[nodiscard]] double middle(const Curve &curve, double t0, double t1);
+
+/// Distance of the curve from the chord over [t0, t1], relative to the chord's length.
+[[nodiscard]] double relative_sagitta(const Curve &curve, double t0, double t1);
+
+/// Brings edges nearer to the geometry's own polyline, which is valid: an edge that
+/// spans points of the geometry is split at one, another becomes a piece of a straight
+/// segment. @returns whether anything changed.
+bool retreat(Geometry &geometry, const Background<2> &background, Outline &outline,
+             const std::vector<Index> &edges);
+
+/// Edges that meet others anywhere but at a common end.
+[[nodiscard]] std::vector<Index> conflicts(const Outline &outline);
+
+} // namespace anistar

@@ -1,0 +1,209 @@
+#include "refine.h"
+
+#include <cmath>
+#include <optional>
+
+namespace anistar {
+namespace {
+
+/// Circumradius above which a cell is refined. A unit equilateral triangle has
+/// 1/sqrt 3 = .577; with this value the edges of the result have mean length one.
+constexpr double largest_radius = .78;
+/// Smallest metric distance between a new vertex and those around it.
+constexpr double separation = .6;
+/// Constrained edges shorter than this are not split by refinement.
+constexpr double shortest_split = 1.3;
+/// A cell this much larger than the target whose circumcentre is hidden behind a
+/// constraint is refined at its centroid.
+constexpr double hidden_radius = 3 * largest_radius;
+constexpr int flip_cap = 200;
+/// Radii are sorted into buckets, four to a factor of two.
+constexpr std::size_t n_buckets = 64;
+
+struct Circle {
+  Vector<2> centre;
+  double radius;
+};
+
+/// Circumcircle in the mean of the three metrics, whose density is their geometric mean.
+std::optional<Circle> circumcircle(const Vertex<2> &a, const Vertex<2> &b,
+                                   const Vertex<2> &c) {
+  SymmetricTensor<2> M = a.weight * a.M + b.weight * b.M + c.weight * c.M;
+  const double density = 1 / std::cbrt(a.weight * b.weight * c.weight);
+  M *= density / std::sqrt(determinant<2>(M));
+  const Vector<2> u = b.x - a.x, v = c.x - a.x;
+  const double area = cross(u, v);
+  if (!(area > 0))
+    return std::nullopt;
+  const double uu = quadratic<2>(M, u), vv = quadratic<2>(M, v);
+  // M (centre - a) = g with 2 g.u = uu and 2 g.v = vv
+  const double gx = (uu * v[1] - vv * u[1]) / (2 * area);
+  const double gy = (vv * u[0] - uu * v[0]) / (2 * area);
+  const double det = determinant<2>(M);
+  const Vector<2> r((M(1, 1) * gx - M(0, 1) * gy) / det,
+                    (M(0, 0) * gy - M(0, 1) * gx) / det);
+  return Circle{a.x + r, std::sqrt(std::max(0., r[0] * gx + r[1] * gy))};
+}
+
+class Refinement {
+public:
+  Refinement(Workspace &w, Legaliser &legaliser, Monitor &monitor)
+      : w_(w), legaliser_(legaliser), monitor_(monitor) {}
+
+  RefineCounts run() {
+    for (std::size_t c = 0; c < w_.mesh.cells.size(); ++c)
+      push(static_cast<Index>(c));
+    Index cell = none;
+    while ((cell = pop()) != none &&
+           monitor_.keep_going(w_.mesh.vertices.size(), 0))
+      treat(cell);
+    return counts_;
+  }
+
+private:
+  struct Entry { ///< a cell as it was when pushed
+    Index cell;
+    Cell<2> vertices;
+  };
+
+  Workspace &w_;
+  Legaliser &legaliser_;
+  Monitor &monitor_;
+  RefineCounts counts_;
+  std::array<std::vector<Entry>, n_buckets> buckets_;
+  std::array<std::size_t, n_buckets> head_{};
+  std::size_t top_ = 0; ///< no bucket above this one has entries
+  std::vector<Index> changed_;
+
+  [[nodiscard]] std::optional<Circle> circle_of(Index cell) const {
+    const Cell<2> &v = w_.mesh.at(cell);
+    return circumcircle(w_.mesh.vertex(v[0]), w_.mesh.vertex(v[1]),
+                        w_.mesh.vertex(v[2]));
+  }
+
+  void push(Index cell) {
+    if (!w_.mesh.is_alive(cell))
+      return;
+    const std::optional<Circle> circle = circle_of(cell);
+    if (!circle || !(circle->radius > largest_radius))
+      return;
+    const double level = 4 * std::log2(circle->radius / largest_radius);
+    const std::size_t b = std::min(n_buckets - 1, static_cast<std::size_t>(level));
+    buckets_[b].push_back({cell, w_.mesh.at(cell)});
+    top_ = std::max(top_, b);
+  }
+
+  Index pop() {
+    for (;;) {
+      std::vector<Entry> &bucket = buckets_[top_];
+      std::size_t &head = head_[top_];
+      while (head < bucket.size()) {
+        const Entry entry = bucket[head++];
+        if (w_.mesh.at(entry.cell) == entry.vertices)
+          return entry.cell;
+      }
+      bucket.clear();
+      head = 0;
+      if (top_ == 0)
+        return none;
+      --top_;
+    }
+  }
+
+  /// Legalises around the last cavity and queues what changed.
+  void settle() {
+    changed_.clear();
+    for (HalfFacet h : w_.cavity.star()) {
+      changed_.push_back(h.cell());
+      legaliser_.push(h);
+    }
+    legaliser_.run(flip_cap, &changed_);
+    for (Index c : changed_)
+      push(c);
+  }
+
+  bool split(HalfFacet wall) {
+    if (w_.length(wall) < shortest_split || split_edge(w_, wall) == none)
+      return false;
+    ++counts_.boundary_splits;
+    settle();
+    return true;
+  }
+
+  void treat(Index cell) {
+    const Cell<2> before = w_.mesh.at(cell);
+    const std::optional<Circle> circle = circle_of(cell);
+    if (!circle)
+      return;
+    Vector<2> x = circle->centre;
+    Walk at = walk_to(w_.mesh, cell, x);
+    if (at.cell == none) {
+      if (at.wall.exists() && split(at.wall)) {
+        again(cell, before);
+        return;
+      }
+      if (circle->radius < hidden_radius) {
+        ++counts_.rejected;
+        return;
+      }
+      const Simplex<2> s = w_.mesh.simplex(cell);
+      x = (s[0] + s[1] + s[2]) / 3;
+      at.cell = cell;
+    }
+    Index hint = w_.mesh.background_cell[static_cast<std::size_t>(before[0])];
+    const Vertex<2> vertex = w_.background.vertex(x, hint);
+    for (std::size_t i = 0; i < 3; ++i)
+      if (encroaches(vertex, HalfFacet(at.cell, i))) {
+        if (split(HalfFacet(at.cell, i)))
+          again(cell, before);
+        else
+          ++counts_.rejected;
+        return;
+      }
+    if (is_crowded(vertex, at.cell) ||
+        insert_in_cell(w_, at.cell, vertex, hint) == none) {
+      ++counts_.rejected;
+      return;
+    }
+    ++counts_.inserted;
+    settle();
+  }
+
+  void again(Index cell, const Cell<2> &before) {
+    if (w_.mesh.at(cell) == before)
+      push(cell);
+  }
+
+  /// x lies inside the diametral ellipse, in its own metric, of a constrained edge.
+  [[nodiscard]] bool encroaches(const Vertex<2> &p, HalfFacet edge) const {
+    if (w_.mesh.constraint(edge) == none)
+      return false;
+    const auto [a, b] = w_.mesh.facet(edge);
+    const Vector<2> u = w_.mesh.vertex(a).x - p.x, v = w_.mesh.vertex(b).x - p.x;
+    return product<2>(p.M, u).dot(v) < 0;
+  }
+
+  [[nodiscard]] bool is_crowded(const Vertex<2> &p, Index cell) const {
+    const auto near = [&](Index v) {
+      const Vertex<2> &q = w_.mesh.vertex(v);
+      const Vector<2> r = q.x - p.x;
+      return quadratic<2>(p.M, r) < separation * separation ||
+             quadratic<2>(q.M, r) < separation * separation;
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+      const HalfFacet beyond = w_.mesh.opposite(HalfFacet(cell, i));
+      if (near(w_.mesh.at(cell)[i]) ||
+          (beyond.exists() && near(w_.mesh.apex(beyond))))
+        return true;
+    }
+    return false;
+  }
+};
+
+} // namespace
+
+RefineCounts refine(Workspace &w, Legaliser &legaliser, Monitor &monitor) {
+  return Refinement(w, legaliser, monitor).run();
+}
+
+} // namespace anistar

@@ -1,0 +1,125 @@
+#include "remesh.h"
+
+#include "outline.h"
+#include "refine.h"
+#include "start.h"
+
+namespace anistar {
+namespace {
+
+/// The schedule of phase 3, found by measurement: length control in between sweeps of
+/// smoothing, first wide, then near the bounds of a unit edge; ODT at the end evens
+/// the shapes out.
+struct Round {
+  int pliant_sweeps, odt_sweeps;
+  double shortest, longest; ///< lengths to control after the sweeps; 0: none
+};
+constexpr Round schedule[] = {{3, 0, .68, 1.45}, {3, 0, .70, 1.42}, {2, 2, 0, 0}};
+
+/// Outliers of the last sweeps: edges beyond these, cells below this quality.
+constexpr double shortest_outlier = .5, longest_outlier = 1.55;
+constexpr double repair_floor = .5;
+
+class Stopwatch {
+public:
+  Stopwatch(Monitor &monitor, std::map<std::string, double> &seconds)
+      : monitor_(monitor), seconds_(seconds) {}
+  void phase(const std::string &name) {
+    stop();
+    name_ = name;
+    monitor_.enter(name);
+  }
+  void stop() {
+    const double now = monitor_.elapsed();
+    if (!name_.empty())
+      seconds_[name_] += now - last_;
+    last_ = now;
+  }
+
+private:
+  Monitor &monitor_;
+  std::map<std::string, double> &seconds_;
+  std::string name_;
+  double last_ = 0;
+};
+
+void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor,
+           std::map<std::string, double> &counts) {
+  const auto control = [&](double shortest, double longest) {
+    const LengthCounts done = control_lengths(w, legaliser, monitor, shortest, longest);
+    counts["splits"] += static_cast<double>(done.splits);
+    counts["collapses"] += static_cast<double>(done.collapses);
+  };
+  for (const Round &round : schedule) {
+    for (int k = 0; k < round.pliant_sweeps; ++k)
+      smooth(w, legaliser, monitor, Target::unit_edges);
+    for (int k = 0; k < round.odt_sweeps; ++k)
+      smooth(w, legaliser, monitor, Target::odt);
+    if (round.longest > 0)
+      control(round.shortest, round.longest);
+  }
+  control(shortest_outlier, longest_outlier);
+  counts["poor"] = static_cast<double>(repair(w, monitor, repair_floor));
+}
+
+void extract(const Workspace &w, RemeshResult &out) {
+  const Triangulation<2> &mesh = w.mesh;
+  out.vertices = mesh.vertices;
+  out.cells = mesh.cells;
+  out.cell_tags = mesh.region;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const HalfFacet h(static_cast<Index>(c), i), other = mesh.opposite(h);
+      if (mesh.constraint(h) == none || (other.exists() && other.cell() < h.cell()))
+        continue;
+      out.facets.push_back(mesh.facet(h));
+      out.facet_tags.push_back(w.curve(w.curve_edge(h)).tag);
+    }
+}
+
+} // namespace
+
+RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
+                    const Projection &projection, const RemeshSettings &settings,
+                    Monitor::Progress progress) {
+  RemeshResult out;
+  Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
+  Stopwatch watch(monitor, out.seconds);
+
+  watch.phase("curves");
+  Geometry geometry = make_geometry(input, &projection);
+  Outline outline =
+      make_outline(geometry, background, settings.hausdorff_number, monitor);
+
+  watch.phase("size");
+  MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));
+  Workspace w{on_curves, geometry, background, settings.hausdorff_number};
+  Legaliser legaliser(w.mesh);
+  const RefineCounts refined = refine(w, legaliser, monitor);
+
+  watch.phase("shape");
+  const auto renumber = [&] {
+    const std::vector<Index> rank = sort_along_curve(w.mesh);
+    for (CurveEdge &edge : on_curves.curve_edges) {
+      edge.v0 = rank[static_cast<std::size_t>(edge.v0)];
+      edge.v1 = rank[static_cast<std::size_t>(edge.v1)];
+    }
+  };
+  renumber();
+  shape(w, legaliser, monitor, out.counts);
+  renumber();
+
+  watch.phase("report");
+  extract(w, out);
+  out.statistics = measure(out.vertices, out.cells);
+  watch.stop();
+  out.counts["inserted"] = static_cast<double>(refined.inserted);
+  out.counts["boundary_splits"] = static_cast<double>(refined.boundary_splits);
+  out.counts["rejected"] = static_cast<double>(refined.rejected);
+  out.counts["flips"] = static_cast<double>(legaliser.n_flips());
+  out.counts["capped"] = static_cast<double>(legaliser.n_capped());
+  out.reason = monitor.reason();
+  return out;
+}
+
+} // namespace anistar

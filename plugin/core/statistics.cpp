@@ -1,0 +1,48 @@
+#include "statistics.h"
+
+namespace anistar {
+
+Statistics measure(std::span<const Vertex<2>> vertices, std::span<const Cell<2>> cells) {
+  Statistics out;
+  const std::span bins(Statistics::length_bins);
+  out.length_histogram.assign(bins.size() + 1, 0);
+  out.quality_histogram.assign(Statistics::n_quality_bins, 0);
+  const auto vertex = [&](Index v) -> const Vertex<2> & {
+    return vertices[static_cast<std::size_t>(v)];
+  };
+  const auto neighbours = adjacency<2>(cells, vertices.size());
+  double length_sum = 0, quality_sum = 0;
+  std::size_t unit = 0;
+  out.length_min = out.quality_min = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const Cell<2> &cell = cells[c];
+    const double q = quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2]));
+    quality_sum += q;
+    out.quality_min = std::min(out.quality_min, q);
+    const double bin = std::clamp(q, 0., 1.) * Statistics::n_quality_bins;
+    ++out.quality_histogram[std::min(Statistics::n_quality_bins - 1,
+                                     static_cast<std::size_t>(bin))];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const HalfFacet other = neighbours[c][i];
+      if (other.exists() && static_cast<std::size_t>(other.cell()) < c)
+        continue; // counted from the other side
+      const auto [a, b] = facet_of<2>(cell, i);
+      const double l = edge_length(vertex(a), vertex(b));
+      ++out.n_edges;
+      length_sum += l;
+      out.length_min = std::min(out.length_min, l);
+      out.length_max = std::max(out.length_max, l);
+      unit += l >= shortest_unit && l <= longest_unit;
+      ++out.length_histogram[static_cast<std::size_t>(
+          std::upper_bound(bins.begin(), bins.end(), l) - bins.begin())];
+    }
+  }
+  const double n_edges = static_cast<double>(std::max<std::size_t>(out.n_edges, 1));
+  out.unit_fraction = static_cast<double>(unit) / n_edges;
+  out.length_mean = length_sum / n_edges;
+  out.quality_mean =
+      quality_sum / static_cast<double>(std::max<std::size_t>(cells.size(), 1));
+  return out;
+}
+
+} // namespace anistar

@@ -1,0 +1,28 @@
+#pragma once
+// How well a mesh fits its metric: the figures of every report.
+
+#include "measures.h"
+
+#include <span>
+#include <vector>
+
+namespace anistar {
+
+struct Statistics {
+  /// Bounds of the bins of `length_histogram`: below the first, between, above the last.
+  static constexpr double length_bins[] = {.25, .5,  shortest_unit, .8, .9,
+                                           1.1, 1.2, longest_unit,  2,  4};
+  static constexpr std::size_t n_quality_bins = 10; ///< of equal width over [0, 1]
+
+  std::size_t n_edges = 0;
+  double unit_fraction = 0, length_min = 0, length_mean = 0, length_max = 0;
+  std::vector<std::size_t> length_histogram;
+  double quality_min = 0, quality_mean = 0;
+  std::vector<std::size_t> quality_histogram;
+};
+
+/// Edge lengths and qualities by the metric at the vertices.
+[[nodiscard]] Statistics measure(std::span<const Vertex<2>> vertices,
+                                 std::span<const Cell<2>> cells);
+
+} // namespace anistar
