@@ -34,6 +34,10 @@ if TYPE_CHECKING:
 ROUND_OFF = 16 * np.finfo(np.float64).eps
 
 
+# The checks multiply up to four lengths, which must stay below the largest double.
+LARGEST = 1e75
+
+
 @dataclass(frozen=True)
 class Violation:
     """One broken rule.
@@ -74,7 +78,7 @@ def validate(
     -------
     list of Violation
     """
-    found = list(cell_violations(mesh.points, mesh.cells))
+    found = [*_length_violations(mesh), *cell_violations(mesh.points, mesh.cells)]
     if any(violation.kind in _BLOCKING for violation in found):
         return found
     table = facet_table(mesh.cells, mesh.n_points)
@@ -92,7 +96,17 @@ def validate(
     return found
 
 
-_BLOCKING = {"empty", "non_finite", "index"}
+_BLOCKING = {"length", "empty", "non_finite", "index"}
+
+
+def _length_violations(mesh: Mesh) -> Iterator[Violation]:
+    for name, tags, rows in (
+        ("cell", mesh.cell_tags, mesh.cells),
+        ("facet", mesh.facet_tags, mesh.facets),
+        ("edge", mesh.edge_tags, mesh.edges),
+    ):
+        if len(tags) != len(rows):
+            yield Violation("length", f"{len(tags)} {name}_tags for {len(rows)} {name}s")
 
 
 def _violation(kind: str, bad: Bool, message: str) -> Iterator[Violation]:
@@ -114,14 +128,24 @@ def _index_violation(name: str, rows: Int, n_points: int) -> Iterator[Violation]
         )
 
 
+def point_violations(points: Float) -> Iterator[Violation]:
+    """Yield the points whose coordinates cannot be computed with."""
+    non_finite = ~np.isfinite(points).all(axis=1)
+    yield from _violation("non_finite", non_finite, "point {i} has a non-finite coordinate")
+    huge = (np.abs(points) > LARGEST).any(axis=1) & ~non_finite
+    text = f"point {{i}} has a coordinate beyond {LARGEST:g} in magnitude"
+    yield from _violation("non_finite", huge, text)
+
+
 def cell_violations(points: Float, cells: Int) -> Iterator[Violation]:
     """Yield what is wrong with points and cells taken one by one."""
     if len(cells) == 0:
         yield Violation("empty", "the mesh is empty: it has no cells")
         return
-    yield from _violation(
-        "non_finite", ~np.isfinite(points).all(axis=1), "point {i} has a non-finite coordinate"
-    )
+    bad_points = list(point_violations(points))
+    if bad_points:
+        yield from bad_points
+        return
     bad_index = list(_index_violation("cell", cells, len(points)))
     if bad_index:
         yield from bad_index
@@ -183,12 +207,16 @@ def _same_side(cells: Int, table: FacetTable) -> Bool:
     rows = np.flatnonzero(table.counts > 1)
     first = table.facets[rows]
     second = cells[table.cells[rows, 1][:, None], LOCAL_FACETS[width][table.local[rows, 1]]]
-    if width == 2:
-        same[rows] = first[:, 0] == second[:, 0]
-    else:
-        start = np.argmax(second == first[:, :1], axis=1)
-        same[rows] = second[np.arange(len(rows)), (start + 1) % 3] == first[:, 1]
+    same[rows] = _turn_alike(first, second)
     return same
+
+
+def _turn_alike(first: Int, second: Int) -> Bool:
+    """Tell which of the facets, with equal points in each row, have the same orientation."""
+    if first.shape[1] == 2:
+        return np.asarray(first[:, 0] == second[:, 0])
+    start = np.argmax(second == first[:, :1], axis=1)
+    return np.asarray(second[np.arange(len(second)), (start + 1) % 3] == first[:, 1])
 
 
 def _duplicate_violations(cells: Int) -> Iterator[Violation]:
@@ -291,11 +319,8 @@ def _completeness_violations(mesh: Mesh, table: FacetTable) -> Iterator[Violatio
             text = f"{what} {_nodes(table, row)} of cell {table.cells[row, 0]} is not stored"
             yield Violation(kind, text, tuple(np.unique(table.cells[bad, 0]).tolist()))
     known = np.flatnonzero((rows >= 0) & (table.counts[rows] == 1))
-    given, outward = mesh.facets[known], table.facets[rows[known]]
     turned = np.zeros(mesh.n_facets, dtype=bool)
-    start = np.argmax(given == outward[:, :1], axis=1)
-    following = given[np.arange(len(known)), (start + 1) % mesh.dim]
-    turned[known] = following != outward[:, 1]
+    turned[known] = ~_turn_alike(mesh.facets[known], table.facets[rows[known]])
     yield from _violation("orientation", turned, "boundary facet {i} does not point outward")
 
 

@@ -22,6 +22,7 @@ from .export import exported
 from .raw import RawMesh
 
 __all__ = [
+    "FormatError",
     "ReadReport",
     "read",
     "read_metric",
@@ -117,7 +118,7 @@ def write(
     if mesh.names:
         _log.warning("%s: this format has no names, they are not written", path)
     with replaced(path) as temporary:
-        meshio_guard.write(temporary, exported(mesh, checked))
+        meshio_guard.write(temporary, exported(mesh, checked), path)
 
 
 def read_metric(path: PathLike, mesh: Mesh) -> Float:

@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import FormatError
 from ..fields import Field, Kind
 from ..mesh import Mesh
-from ..validation import volume_signs
+from ..validation import point_violations, volume_signs
 from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh
 from .tensor_orders import from_components
 
@@ -69,6 +69,8 @@ def _assembled(raw: RawMesh, path: Path) -> tuple[Mesh, dict[str, Field], ReadRe
     dim = _domain_dim(raw)
     blocks = {d: _merged(raw, d) for d in range(dim + 1)}
     cells = blocks[dim]
+    for violation in point_violations(raw.points):
+        raise ValueError(violation.message)
     for block in blocks.values():
         _check_indices(block, len(raw.points))
     points = _in_dimension(raw.points, dim, cells.rows)

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FormatError
-from .text_rows import parsed, printed
+from .text_rows import integers, parsed, printed
 
 # keyword -> (code, integers in a row); Vertices and SolAt* have their own layout.
 ENTITIES = {
@@ -127,17 +127,20 @@ def _from_text(text: str) -> Container:
     }
     if "Dimension" not in sections:
         raise FormatError("it has no Dimension")
-    if "End" not in sections:
+    # Solution files written by hand often lack it; their one section is checked by its count.
+    if "End" not in sections and "Vertices" in sections:
         raise FormatError("it is truncated: the keyword End is missing")
-    dim = _checked_dim(int(_numbers("Dimension", sections["Dimension"])[0]))
+    first = _numbers("Dimension", sections["Dimension"])[:1]
+    dim = _checked_dim(int(_integers("Dimension", first)[0]))
     container = Container(dim=dim, notes=notes)
     for keyword, body in sections.items():
         if keyword == "Vertices":
             rows = _table(keyword, _numbers(keyword, body), dim + 1)
-            container.points, container.point_refs = rows[:, :dim].copy(), rows[:, dim].astype(int)
+            container.points = rows[:, :dim].copy()
+            container.point_refs = _integers(keyword, rows[:, dim])
         elif keyword in ENTITIES:
             rows = _table(keyword, _numbers(keyword, body), ENTITIES[keyword][1])
-            container.tables[keyword] = rows.astype(np.int64)
+            container.tables[keyword] = _integers(keyword, rows)
         elif keyword in SOLUTIONS:
             container.solutions[keyword] = _text_solution(keyword, _numbers(keyword, body), dim)
     return container
@@ -166,8 +169,15 @@ def _numbers(keyword: str, body: str) -> NDArray[np.float64]:
     return numbers
 
 
+def _integers(keyword: str, numbers: NDArray[np.float64]) -> NDArray[np.int64]:
+    try:
+        return integers(numbers)
+    except ValueError as error:
+        raise FormatError(f"{keyword} {error}") from error
+
+
 def _table(keyword: str, numbers: NDArray[np.float64], width: int) -> NDArray[np.float64]:
-    count = int(numbers[0])
+    count = int(_integers(keyword, numbers[:1])[0])
     if len(numbers) - 1 != count * width:
         raise FormatError(
             f"{keyword} announces {count} rows of {width} numbers, "
@@ -177,8 +187,8 @@ def _table(keyword: str, numbers: NDArray[np.float64], width: int) -> NDArray[np
 
 
 def _text_solution(keyword: str, numbers: NDArray[np.float64], dim: int) -> Solution:
-    n_types = int(numbers[1]) if len(numbers) > 1 else 0
-    types = numbers[2 : 2 + n_types].astype(int).tolist()
+    n_types = int(_integers(keyword, numbers[1:2])[0]) if len(numbers) > 1 else 0
+    types = _integers(keyword, numbers[2 : 2 + n_types]).tolist()
     body = np.r_[numbers[0], numbers[2 + n_types :]]
     return Solution(types, _table(keyword, body, sum(columns_of(types, dim))).copy())
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..errors import FormatError
 from .raw import Array, Block, RawMesh
-from .text_rows import parsed
+from .text_rows import integers, parsed
 
 # Gmsh's element type -> kind and number of nodes.
 _KINDS = {
@@ -101,12 +101,13 @@ class _Numbers:
 
     def __init__(self, what: str, numbers: NDArray[Any]) -> None:
         self._what = what
+        numbers = integers(np.asarray(numbers, dtype=np.float64))
         self._order = np.argsort(numbers, kind="stable")
-        self._sorted = numbers[self._order].astype(np.int64)
+        self._sorted = numbers[self._order]
 
     def rows(self, wanted: NDArray[Any]) -> Array:
         """Return the row of each number; raise on an unknown one."""
-        wanted = wanted.astype(np.int64)
+        wanted = integers(np.asarray(wanted, dtype=np.float64))
         at = np.searchsorted(self._sorted, wanted).clip(max=max(len(self._sorted) - 1, 0))
         unknown = self._sorted[at] != wanted if len(self._sorted) else np.ones(wanted.shape, bool)
         if unknown.any():
@@ -115,7 +116,7 @@ class _Numbers:
 
 
 def _rows(name: str, numbers: Array, width: int) -> Array:
-    count = int(numbers[0]) if len(numbers) else 0
+    count = int(integers(numbers[:1])[0]) if len(numbers) else 0
     if len(numbers) != 1 + count * width:
         raise ValueError(f"{name} announces {count} rows, but {len(numbers) - 1} numbers follow")
     return np.asarray(numbers[1:].reshape(count, width))
@@ -128,7 +129,7 @@ def _names(body: str) -> dict[tuple[int, int], str]:
 
 def _elements(numbers: Array, index: _Numbers) -> tuple[list[Block], list[Array]]:
     """Return runs of elements of equal type, and the number of each element."""
-    values = numbers.astype(np.int64)
+    values = integers(numbers)
     blocks: list[Block] = []
     labels: list[Array] = []
     at = 1

@@ -30,7 +30,7 @@ _VTK = (".vtu", ".vtk")
 
 
 @contextlib.contextmanager
-def guarded(action: str, path: Path) -> Iterator[None]:
+def guarded(action: str, path: Path, temporary: Path | None = None) -> Iterator[None]:
     """Turn every way in which meshio fails into a `FormatError` that names the file."""
     said = io.StringIO()
     try:
@@ -48,6 +48,7 @@ def guarded(action: str, path: Path) -> Iterator[None]:
         raise FormatError(f"cannot {action} {path}: {reason}") from error
     except Exception as error:
         reason = str(error) or type(error).__name__
+        reason = reason.replace(str(temporary or path), str(path))
         raise FormatError(f"cannot {action} {path}: {reason}") from error
 
 
@@ -132,8 +133,8 @@ def _add_cell_sets(mesh: Any, raw: RawMesh) -> None:
             raw.names[KIND_DIM[block.kind], tag] = name
 
 
-def write(path: Path, content: RawMesh) -> None:
-    """Write through meshio, tags as the integer array `medit:ref`."""
+def write(temporary: Path, content: RawMesh, path: Path) -> None:
+    """Write through meshio, tags as the integer array `medit:ref`; errors name `path`."""
     blocks, options = content.blocks, {}
     if path.suffix in _XDMF:
         # meshio cannot read the single points back that it writes among other cells, and puts
@@ -142,11 +143,11 @@ def write(path: Path, content: RawMesh) -> None:
         options = {"data_format": "XML"}
     cell_data = {name: [block.data[name] for block in blocks] for name in blocks[0].data}
     cell_data[TAG_KEYS[0]] = [np.asarray(block.tags) for block in blocks]
-    with guarded("write", path):
+    with guarded("write", path, temporary):
         mesh = meshio.Mesh(
             content.points,
             [(block.kind, block.rows) for block in blocks],
             point_data=content.point_data,
             cell_data=cell_data,
         )
-        meshio.write(path, mesh, **options)
+        meshio.write(temporary, mesh, **options)

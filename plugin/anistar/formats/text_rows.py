@@ -34,5 +34,19 @@ def parsed(text: str) -> Float:
         warnings.simplefilter("error", DeprecationWarning)
         try:
             return np.fromstring(text, dtype=np.float64, sep=" ")
-        except DeprecationWarning as error:
+        except (DeprecationWarning, ValueError) as error:
             raise ValueError("holds something that is not a number") from error
+
+
+def integers(numbers: Float) -> NDArray[np.int64]:
+    """Return numbers as integers.
+
+    Raises
+    ------
+    ValueError
+        If one of them is not an integer.
+    """
+    bad = ~(np.abs(numbers) < 2.0**53) | (numbers != np.floor(numbers))
+    if bad.any():
+        raise ValueError(f"holds {numbers[bad][0]} where an integer is expected")
+    return numbers.astype(np.int64)
