@@ -1,4 +1,4 @@
-"""Metric fields: which mesh do we want?
+"""Metric fields that say which mesh is wanted.
 
 A metric is an array (n, d, d) of symmetric positive definite tensors at the points of a mesh,
 in 1 / length**2: an edge v should satisfy ``v^T M v = 1``.

@@ -131,7 +131,7 @@ def interpolated(M: Array, weights: Array) -> Array:
 
 
 def determinant(M: Array) -> Array:
-    """Determinants (n,) of symmetric `M`."""
+    """Return the determinants (n,) of symmetric `M`."""
     if M.shape[-1] == 2:
         det: Array = M[:, 0, 0] * M[:, 1, 1] - M[:, 0, 1] * M[:, 1, 0]
         return det

@@ -94,7 +94,7 @@ def mean(metrics: Sequence[Array], weights: ArrayLike | None = None) -> Array:
         raise ValueError(f"weights have shape {shares.shape} but there are {len(checked)} metrics")
     total = shares.sum(axis=0)
     if not (np.all(shares >= 0.0) and np.all(total > 0.0)):
-        raise ValueError(f"weights must be non-negative with a positive sum, got {weights}")
+        raise ValueError(f"weights must be non-negative with a positive sum, got {shares}")
     shares = shares / total
     L = np.zeros_like(checked[0])
     for share, M in zip(shares, checked, strict=True):

@@ -60,4 +60,4 @@ def edge_lengths(v: Array, start: Array, end: Array) -> Array:
     b = np.sqrt(np.einsum("ei,eij,ej->e", v, end, v))
     ratio = np.log(a / b)
     near = np.abs(ratio) < 1e-6
-    return np.where(near, 0.5 * (a + b), (a - b) / np.where(near, 1.0, ratio))
+    return np.asarray(np.where(near, 0.5 * (a + b), (a - b) / np.where(near, 1.0, ratio)))

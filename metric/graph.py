@@ -41,8 +41,8 @@ class VertexGraph:
         return np.repeat(np.arange(self.n_points, dtype=np.int32), counts)
 
     def matrix(self) -> sparse.csr_array:
-        """The adjacency matrix, with ones."""
-        data = np.ones(len(self.neighbours), dtype=np.int8)
+        """Return the adjacency matrix, with ones."""
+        data = np.ones(len(self.neighbours), dtype=np.int32)
         return sparse.csr_array(
             (data, self.neighbours, self.offsets), shape=(self.n_points, self.n_points)
         )
@@ -57,12 +57,12 @@ def mesh_edges(mesh: MeshLike) -> Index:
 
 
 def edge_graph(mesh: MeshLike) -> VertexGraph:
-    """The graph of the mesh edges."""
+    """Return the graph of the mesh edges."""
     return _graph(len(mesh.points), _edge_pairs(mesh.cells))
 
 
 def wide_graph(mesh: MeshLike) -> VertexGraph:
-    """The mesh edges and, across each inner facet, the pair of opposite vertices.
+    """Join the mesh edges and, across each inner facet, the pair of opposite vertices.
 
     On a regular grid the edges alone know the distances along a few directions only; the
     opposite vertices about double the number of directions.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import compose, eigh
+from .algebra import compose, determinant, eigh
 from .combination import intersection
 from .graph import VertexGraph
 
@@ -15,6 +15,9 @@ Array = NDArray[np.float64]
 
 MIXED_WEIGHT = 1.0 / 8.0
 """Weight of the physical growth in the mixed one."""
+
+BAND = 0.25
+"""A round takes the raised vertices whose determinant is at least this share of the largest."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,27 +52,28 @@ def grade(
 ) -> Growth:
     """Raise `metric` until each vertex satisfies the growth law of all its neighbours.
 
-    A round takes the vertices that were raised in the round before, and intersects what they
-    ask with the metrics of their neighbours, for each neighbour in increasing order of the
-    asking vertex.
+    A round takes the densest of the vertices that were raised, and intersects what they ask
+    with the metrics of their neighbours, for each neighbour in increasing order of the asking
+    vertex.
     """
     sources, M = graph.sources, metric.copy()
-    raised = np.ones(graph.n_points, dtype=bool)
+    raised = determinant(M)
     rounds = updates = 0
     while raised.any():
         if rounds == max_rounds:
             return Growth(metric=M, rounds=rounds, updates=updates, converged=False)
         rounds += 1
-        active = np.flatnonzero(raised[sources])
+        front = raised >= BAND * raised.max()
+        raised[front] = 0.0
+        active = np.flatnonzero(front[sources])
         p, q = sources[active], graph.neighbours[active]
-        values, vectors = eigh(M)
-        asked = compose(
-            grown(values[p], vectors[p], points[q] - points[p], model, log_factor), vectors[p]
-        )
-        raised = np.zeros_like(raised)
+        values, vectors = eigh(M[front])
+        at = np.cumsum(front)[p] - 1
+        asked = grown(values[at], vectors[at], points[q] - points[p], model, log_factor)
+        requests = compose(asked, vectors[at])
         for turn in _turns(q):
-            M[q[turn]], changed = intersection(M[q[turn]], asked[turn], tolerance)
-            raised[q[turn][changed]] = True
+            M[q[turn]], changed = intersection(M[q[turn]], requests[turn], tolerance)
+            raised[q[turn][changed]] = determinant(M[q[turn][changed]])
             updates += int(changed.sum())
     return Growth(metric=M, rounds=rounds, updates=updates, converged=True)
 
@@ -79,13 +83,13 @@ def grown(values: Array, vectors: Array, v: Array, model: str, log_factor: float
     length = np.linalg.norm(v, axis=1)[:, None]
     physical = 1.0 + np.sqrt(values) * length * log_factor
     if model == "physical":
-        return values / physical**2
+        return np.asarray(values / physical**2)
     along = np.einsum("kij,ki->kj", vectors, v)
     uniform = 1.0 + np.sqrt((values * along**2).sum(axis=1))[:, None] * log_factor
     if model == "metric":
-        return values / uniform**2
+        return np.asarray(values / uniform**2)
     mixed = physical**MIXED_WEIGHT * uniform ** (1.0 - MIXED_WEIGHT)
-    return values / mixed**2
+    return np.asarray(values / mixed**2)
 
 
 def _turns(q: NDArray[np.int32]) -> list[NDArray[np.intp]]:

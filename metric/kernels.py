@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ Array = NDArray[np.float64]
 
 core: Any
 try:
-    from .. import _core as core
+    core = import_module(".._core", __package__)
 except ImportError:  # the package is used by itself
     core = None
 

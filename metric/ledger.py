@@ -51,7 +51,7 @@ class Ledger:
     distortion: dict[str, float]
 
     def as_dict(self) -> dict[str, Any]:
-        """The ledger in JSON builtins."""
+        """Return the ledger in JSON builtins."""
         values = asdict(self)
         values["stages"] = [asdict(stage) for stage in self.stages]
         return values

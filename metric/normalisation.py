@@ -86,7 +86,7 @@ def check_normalisation(target_complexity: float, p: float) -> None:
 
 
 def _exponents(p: float, d: int) -> tuple[float, float]:
-    """The exponents p / (2p + d) and 1 / (2p + d), also for infinite p."""
+    """Return the exponents p / (2p + d) and 1 / (2p + d), also for infinite p."""
     return 1.0 / (2.0 + d / p), 1.0 / (2.0 * p + d)
 
 

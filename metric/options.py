@@ -69,7 +69,7 @@ class MetricOptions:
         check_normalisation(self.target_complexity or 1.0, self.p)
         if self.target_complexity is not None:
             check_normalisation(self.target_complexity, self.p)
-        n = max((np.size(b) for b in (self.h_min, self.h_max, self.a_max)), default=1)
+        n = max((np.asarray(b).size for b in (self.h_min, self.h_max, self.a_max)), default=1)
         check_bounds(n, h_min=self.h_min, h_max=self.h_max, a_max=self.a_max)
         factor = self.gradation_factor
         if isinstance(factor, str) and factor != "auto":
@@ -108,7 +108,7 @@ class MetricOptions:
         return cls(**found)
 
     def complexity_for(self, dim: int) -> float:
-        """The complexity to reach in dimension `dim`.
+        """Return the complexity to reach in dimension `dim`.
 
         Raises
         ------
@@ -122,7 +122,7 @@ class MetricOptions:
         raise ValueError("give target_complexity or target_elements in MetricOptions, got neither")
 
     def gradation_for(self, dim: int) -> float | None:
-        """The gradation factor in dimension `dim`."""
+        """Return the gradation factor in dimension `dim`."""
         if isinstance(self.gradation_factor, str):
             return DEFAULT_FACTORS[dim]
         return self.gradation_factor

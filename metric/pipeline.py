@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any
 
@@ -114,6 +114,8 @@ class _Finishing:
             growth = Growth(metric=bounded, rounds=0, updates=0, converged=True)
         else:
             growth = grade_on(self.graph, self.mesh.points, bounded, self.factor, self.model)
+            # an intersection of metrics within the bounds can exceed them by some per cent
+            growth = replace(growth, metric=clipped(growth.metric, self.h_min, None, self.a_max))
         return self.complexity(growth.metric), (bounded, growth)
 
     def complexity(self, M: Array) -> float:

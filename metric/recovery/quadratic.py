@@ -63,7 +63,8 @@ def fitted_hessian(
             rows = pending[first : first + BLOCK]
             patches = adjacency[rows]
             for _ in range(level):
-                patches = (patches != 0).astype(np.int8) @ adjacency + patches
+                patches = patches @ adjacency + patches
+                patches.data[:] = 1  # only who is a member counts
             offsets, members = patches.indptr, patches.indices
             H[rows], fitted[rows] = _fit(points, columns, rows, offsets, members)
         pending = pending[~fitted[pending]]

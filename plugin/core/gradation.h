@@ -9,10 +9,10 @@
 namespace anistar {
 
 /// How a metric M_p grows with the distance from p (b is the gradation factor):
-/// each eigenvalue by itself, lambda / (1 + sqrt(lambda) |pq| ln b)^2; all by one factor,
-/// M_p / (1 + l ln b)^2 with l the length of pq in M_p; or the geometric mean of the two
-/// with weights 1/8 and 7/8.
-/// Source: Alauzet, Size gradation control of anisotropic meshes, 2010, sections 6.1, 6.2.
+/// each eigenvalue by itself, lambda / (1 + sqrt(lambda) |pq| ln b)^2; all by one
+/// factor, M_p / (1 + l ln b)^2 with l the length of pq in M_p; or the geometric mean
+/// of the two with weights 1/8 and 7/8. Source: Alauzet, Size gradation control of
+/// anisotropic meshes, 2010, sections 6.1, 6.2.
 enum class GrowthModel { Physical, Metric, Mixed };
 
 enum class GradationStop { Converged, RoundLimit };
@@ -32,17 +32,18 @@ template <std::size_t d> struct Graded {
 };
 
 /// Raises `metric` until M_q is at least the grown M_p for all neighbours p, q.
-/// The work queue holds the vertices raised in the last round; a round intersects, in
-/// increasing order of p, what they ask with their neighbours. Never coarsens, leaves a
-/// graded metric untouched, and depends on nothing but its arguments.
-/// @pre the metrics are positive definite; neighbours of v are neighbours[offsets[v]] to
+/// The work queue holds the vertices that were raised; a round takes the densest of
+/// them and intersects, in increasing order of p, what they ask with their neighbours.
+/// Never coarsens, leaves a graded metric untouched, and depends on nothing but its
+/// arguments.
+/// @pre the metrics are positive definite; neighbours of v are neighbours[offsets[v]]
+/// to
 ///      neighbours[offsets[v + 1]], all in range.
 template <std::size_t d>
-[[nodiscard]] Graded<d> graded(std::span<const Vector<d>> points,
-                               std::vector<SymmetricTensor<d>> metric,
-                               std::span<const std::int32_t> offsets,
-                               std::span<const std::int32_t> neighbours,
-                               const GradationOptions &options);
+[[nodiscard]] Graded<d>
+graded(std::span<const Vector<d>> points, std::vector<SymmetricTensor<d>> metric,
+       std::span<const std::int32_t> offsets, std::span<const std::int32_t> neighbours,
+       const GradationOptions &options);
 
 extern template Graded<2> graded<2>(std::span<const Vector<2>>,
                                     std::vector<SymmetricTensor<2>>,

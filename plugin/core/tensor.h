@@ -220,9 +220,10 @@ template <std::size_t d>
     return determinant(D) > 0;
 }
 
-/// Replaces M by its intersection with N (simultaneous reduction: the larger value on each
-/// axis of their common basis) where N exceeds M by a factor of 1 + `tolerance` somewhere;
-/// returns whether it did. What is added is semidefinite: M never gets coarser.
+/// Replaces M by its intersection with N (simultaneous reduction: the larger value on
+/// each axis of their common basis) where N exceeds M by a factor of 1 + `tolerance`
+/// somewhere; returns whether it did. What is added is semidefinite: M never gets
+/// coarser.
 /// @pre M and N are positive definite.
 template <std::size_t d>
 inline bool raise(SymmetricTensor<d> &M, const SymmetricTensor<d> &N,

@@ -84,10 +84,10 @@ nb::tuple grade(Array2<double> points, Array3<double> metric,
   const std::span<const std::int32_t> starts(offsets.data(), offsets.size());
   const std::span<const std::int32_t> ends(neighbours.data(), neighbours.size());
   check_graph(starts, ends, n);
-  const GradationOptions options{growth_model(model), log_factor, tolerance, max_rounds};
-  return d == 2
-             ? grade_in<2>(points.data(), metric.data(), n, starts, ends, options)
-             : grade_in<3>(points.data(), metric.data(), n, starts, ends, options);
+  const GradationOptions options{growth_model(model), log_factor, tolerance,
+                                 max_rounds};
+  return d == 2 ? grade_in<2>(points.data(), metric.data(), n, starts, ends, options)
+                : grade_in<3>(points.data(), metric.data(), n, starts, ends, options);
 }
 
 } // namespace
