@@ -19,7 +19,7 @@ from .interpolation_error import l2_norm
 from .loop import Loop, LoopOptions, Step, adapt_loop
 from .mesh import Mesh
 from .metric import MetricOptions
-from .remesh import remesh
+from .remesh import RemeshOptions, remesh
 from .report import as_builtin, fields_of, write_json
 from .series import write_series
 from .study import observed_order
@@ -39,6 +39,9 @@ REFERENCE = 5.0
 
 # No layer of this problem is thinner; keeps the jumps in the boundary values from taking it all.
 SMALLEST_SIZE = EPSILON / 10
+
+# Keeps the obstacle round where the temperature would let it be coarse.
+CURVES = RemeshOptions(hausdorff_number=0.02)
 
 # Around the obstacle and the front of its wake.
 CLOSE_UP = (0.85, 1.65, 0.42, 0.82)
@@ -133,7 +136,7 @@ def run_demo(
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
     coarse = channel()
-    options = AdaptOptions(metric=MetricOptions(h_min=SMALLEST_SIZE))
+    options = AdaptOptions(metric=MetricOptions(h_min=SMALLEST_SIZE), remesh=CURVES)
     loop = adapt_loop(
         solve,
         coarse,
@@ -168,7 +171,7 @@ def run_demo(
 
 def _reference(step: Step, coarse: Mesh, complexity: float) -> tuple[Mesh, Floats]:
     options = AdaptOptions(
-        metric=MetricOptions(target_complexity=complexity, h_min=SMALLEST_SIZE / 2)
+        metric=MetricOptions(target_complexity=complexity, h_min=SMALLEST_SIZE / 2), remesh=CURVES
     )
     mesh = adapt(step.mesh, step.fields, options, geometry=coarse).mesh
     return mesh, solve(mesh, {})["u"]
@@ -178,7 +181,7 @@ def _row(step: Step, coarse: Mesh, reference: tuple[Mesh, Floats]) -> DemoRow:
     area = float(cell_volumes(coarse.points, coarse.cells).sum())
     complexity = float(step.complexity or 0.0)
     M = np.tile(complexity / area * np.eye(2), (coarse.n_points, 1, 1))
-    uniform = remesh(coarse, M, geometry=coarse).mesh
+    uniform = remesh(coarse, M, CURVES, geometry=coarse).mesh
     return DemoRow(
         complexity=complexity,
         adapted_points=step.mesh.n_points,

@@ -3,7 +3,6 @@
 ``-eps Laplace(u) + b . grad(u) = 0`` by P1 elements, stabilised along the wind (SUPG).
 """
 
-import numpy as np
 from skfem import Basis, BilinearForm, ElementTriP0, ElementTriP1, condense, solve
 
 import anistar
@@ -13,12 +12,14 @@ from anistar.demo_problem import EPSILON, WIND, channel, upwind_times
 
 @BilinearForm
 def transport(u, v, w):
+    """The stabilised form."""
     along = WIND[0] * u.grad[0] + WIND[1] * u.grad[1]
     upwind = v + w.tau * (WIND[0] * v.grad[0] + WIND[1] * v.grad[1])
     return EPSILON * (u.grad[0] * v.grad[0] + u.grad[1] * v.grad[1]) + along * upwind
 
 
 def solve_heat(mesh, fields):
+    """Solve on a mesh of the channel; the fields of the last mesh are not needed."""
     basis = Basis(to_skfem(mesh), ElementTriP1())
     tau = basis.with_element(ElementTriP0()).interpolate(upwind_times(mesh))
     u = basis.zeros()
@@ -28,6 +29,7 @@ def solve_heat(mesh, fields):
 
 
 def main(complexities=(500, 1000, 2000, 4000), output="heat.vtu"):
+    """Adapt to growing complexities and write the last mesh and temperature."""
     options = anistar.LoopOptions(complexities=complexities)
     loop = anistar.adapt_loop(solve_heat, channel(), options)
     for step in loop.steps:
