@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -54,7 +54,7 @@ class AdaptOptions:
     metric: MetricOptions = field(default_factory=MetricOptions)
     remesh: RemeshOptions = field(default_factory=RemeshOptions)
     transfer: TransferOptions = field(default_factory=_transfer_to_a_remesh)
-    metric_fields: tuple[str, ...] | None = None
+    metric_fields: Sequence[str] | None = None
 
     def __post_init__(self) -> None:
         names = self.metric_fields
@@ -190,7 +190,7 @@ def adapt(
 
 
 def metric_field_names(
-    fields: Mapping[str, Field], wanted: tuple[str, ...] | None
+    fields: Mapping[str, Field], wanted: Sequence[str] | None
 ) -> tuple[str, ...]:
     """Return the names of the fields that make the metric.
 
@@ -213,7 +213,7 @@ def metric_field_names(
                 f"field {name!r} is a {field.kind} on {field.on}: a metric needs a scalar or a "
                 "vector at the points"
             )
-    names = wanted if wanted is not None else usable
+    names = tuple(wanted) if wanted is not None else usable
     if not names:
         raise ValueError(
             "no scalar or vector field at the points to make a metric of; the fields are: "

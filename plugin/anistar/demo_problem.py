@@ -100,7 +100,7 @@ def solve(mesh: Mesh, fields: dict[str, Any]) -> dict[str, Any]:
     domain = to_skfem(mesh)
     basis = Basis(domain, ElementTriP1())
     tau = basis.with_element(ElementTriP0()).interpolate(upwind_times(mesh))
-    A = _advection_diffusion.assemble(basis, tau=tau)
+    A = BilinearForm(_advection_diffusion).assemble(basis, tau=tau)
     u = np.zeros(mesh.n_points)
     fixed = [basis.get_dofs(name).all() for name in TEMPERATURE]
     for dofs, value in zip(fixed, TEMPERATURE.values(), strict=True):
@@ -108,7 +108,6 @@ def solve(mesh: Mesh, fields: dict[str, Any]) -> dict[str, Any]:
     return {"u": solve_linear(*condense(A, x=u, D=np.unique(np.concatenate(fixed))))}
 
 
-@BilinearForm
 def _advection_diffusion(u: Any, v: Any, w: Any) -> Any:
     along = WIND[0] * u.grad[0] + WIND[1] * u.grad[1]
     test = v + w.tau * (WIND[0] * v.grad[0] + WIND[1] * v.grad[1])
@@ -172,7 +171,7 @@ def _interior(size: float, boundary: Floats) -> Floats:
 def _is_inside(x: Floats) -> NDArray[np.bool_]:
     in_step = (x[:, 0] < STEP_LENGTH) & (x[:, 1] < STEP_HEIGHT)
     in_circle = np.linalg.norm(x - CENTRE, axis=1) < RADIUS
-    return ~(in_step | in_circle)
+    return np.asarray(~(in_step | in_circle))
 
 
 def _positive(points: Floats, cells: NDArray[Any]) -> NDArray[Any]:

@@ -199,7 +199,7 @@ def _draw_solution(figure: Any, axes: Any, mesh: Mesh, values: ArrayLike, label:
 
 
 def _draw_ellipses(axes: Any, mesh: Mesh, M: Floats) -> None:
-    curves = LineCollection(ellipses(mesh.points, M), colors=MUTED, linewidths=0.6)
+    curves = LineCollection(list(ellipses(mesh.points, M)), colors=MUTED, linewidths=0.6)
     axes.add_collection(curves)
     # The triangles together are the domain: what lies outside of it is not metric.
     corners = mesh.points[np.column_stack([mesh.cells, mesh.cells[:, :1]])].reshape(-1, 2)
@@ -211,11 +211,11 @@ def _draw_ellipses(axes: Any, mesh: Mesh, M: Floats) -> None:
 
 def _draw_edges(axes: Any, mesh: Mesh, width: float) -> None:
     edges = unique_edges(mesh.cells, mesh.n_points)
-    axes.add_collection(LineCollection(mesh.points[edges], colors=MUTED, linewidths=width))
+    axes.add_collection(LineCollection(list(mesh.points[edges]), colors=MUTED, linewidths=width))
 
 
 def _draw_boundary(axes: Any, mesh: Mesh) -> None:
-    axes.add_collection(LineCollection(mesh.points[mesh.facets], colors=INK, linewidths=1.1))
+    axes.add_collection(LineCollection(list(mesh.points[mesh.facets]), colors=INK, linewidths=1.1))
 
 
 def _save(figure: Any, path: str | os.PathLike[str]) -> None:

@@ -87,7 +87,7 @@ class TransferReport:
     method, outside : str
         The options that ran.
     points_outside : int
-        Target points farther from the source mesh than the tolerance.
+        Target points (for cell fields: centroids) farther from the source mesh than the tolerance.
     max_distance : float
         Largest distance of a target point from the source mesh, in mesh units.
     changes : dict of str to FieldChange
@@ -185,22 +185,18 @@ def transfer(
         raise ValueError(f"cannot transfer from a {source.dim}D mesh to a {target.dim}D mesh")
     options = _merged(options, method, outside)
     checked = as_fields(source, fields)
-    at_points = _located(source, target.points, "point", options)
-    at_cells: _Places | None = None
-    carried: dict[str, Field] = {}
-    for name, field in checked.items():
-        if field.on == "points":
-            carried[name] = _interpolated(name, source, field, at_points, options)
-        else:
-            if at_cells is None:
-                centroids = target.points[target.cells].mean(axis=1)
-                at_cells = _located(source, centroids, "centroid of cell", options)
-            carried[name] = _picked(name, field, at_cells, options)
+    places = {on: _located(source, target, on, options) for on in {f.on for f in checked.values()}}
+    carried = {
+        name: _interpolated(name, source, field, places["points"], options)
+        if field.on == "points"
+        else _picked(name, field, places["cells"], options)
+        for name, field in checked.items()
+    }
     report = TransferReport(
         method=options.method,
         outside=options.outside,
-        points_outside=int(at_points.outside.sum()),
-        max_distance=at_points.max_distance,
+        points_outside=sum(int(place.outside.sum()) for place in places.values()),
+        max_distance=max((place.max_distance for place in places.values()), default=0.0),
         changes={
             name: _change(source, checked[name], target, carried[name])
             for name in checked
@@ -237,17 +233,19 @@ def _merged(
     )
 
 
-def _located(source: Mesh, queries: Floats, what: str, options: TransferOptions) -> _Places:
+def _located(source: Mesh, target: Mesh, on: str, options: TransferOptions) -> _Places:
+    """Return where the points, or the centroids of the cells, of the target lie."""
+    queries = target.points if on == "points" else target.points[target.cells].mean(axis=1)
     cells, weights, distance = locator(source).locate(np.ascontiguousarray(queries))
-    diagonal = float(np.linalg.norm(np.ptp(source.points, axis=0)))
-    outside = distance > options.tolerance * diagonal
+    allowed = options.tolerance * float(np.linalg.norm(np.ptp(source.points, axis=0)))
+    outside = distance > allowed
     if options.outside == "raise" and outside.any():
         worst = int(np.argmax(distance))
+        what = "point" if on == "points" else "the centroid of cell"
         where = ", ".join(f"{x:.6g}" for x in queries[worst])
         raise ValueError(
             f"{what} {worst} at ({where}) lies {distance[worst]:.3g} outside the source mesh "
-            f"(allowed {options.tolerance * diagonal:.3g}); {int(outside.sum())} such: "
-            "give outside='nearest' or 'nan'"
+            f"(allowed {allowed:.3g}); {int(outside.sum())} such: give outside='nearest' or 'nan'"
         )
     # Round-off leaves weights like -1e-17: clipped, so that values keep within their bounds.
     weights = np.maximum(weights, 0.0)

@@ -12,7 +12,7 @@ from anistar.demo_problem import EPSILON, WIND, channel, upwind_times
 
 @BilinearForm
 def transport(u, v, w):
-    """The stabilised form."""
+    """Integrate the stabilised left-hand side."""
     along = WIND[0] * u.grad[0] + WIND[1] * u.grad[1]
     upwind = v + w.tau * (WIND[0] * v.grad[0] + WIND[1] * v.grad[1])
     return EPSILON * (u.grad[0] * v.grad[0] + u.grad[1] * v.grad[1]) + along * upwind

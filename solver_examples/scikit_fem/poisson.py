@@ -19,13 +19,13 @@ def exact(x):
 
 @BilinearForm
 def laplace(u, v, w):
-    """The form of the left-hand side."""
+    """Integrate the left-hand side."""
     return u.grad[0] * v.grad[0] + u.grad[1] * v.grad[1]
 
 
 @LinearForm
 def load(v, w):
-    """The form of the right-hand side, -Laplace(exact)."""
+    """Integrate the right-hand side, -Laplace(exact)."""
     x = np.moveaxis(np.asarray(w.x), 0, -1)
     t, square = exact(x), (x**2).sum(axis=-1)
     return (1 - t**2) * (8 * STEEPNESS**2 * square * t - 4 * STEEPNESS) * v

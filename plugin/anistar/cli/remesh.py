@@ -33,15 +33,15 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output)
     options = adapt_options(arguments)
-    beside = companion(arguments.input)
-    if arguments.metric is None and beside is None:
+    source = arguments.metric or companion(arguments.input)
+    if source is None:
         raise FormatError(f"no metric: give --metric, there is no .sol beside {arguments.input}")
     mesh, fields = read(arguments.input)
-    M = read_metric(arguments.metric or beside, mesh)
+    M = read_metric(source, mesh)
     geometry = read(arguments.geometry)[0] if arguments.geometry else None
     done = remesh(mesh, M, options.remesh, geometry=geometry)
     # The solution beside a medit mesh is the metric itself, not a field to carry.
-    carried = fields if arguments.metric or beside is None else {}
+    carried = fields if arguments.metric else {}
     write(output, done.mesh, transfer(mesh, carried, done.mesh, options.transfer).fields)
     if arguments.json:
         console.show_json(done.report)
