@@ -16,9 +16,6 @@ from .mesh import Mesh
 #: Suffix of the mesh file, and that of the solution file.
 FILE_KINDS = {"mesh": (".mesh", ".sol"), "meshb": (".meshb", ".solb"), "vtu": (".vtu", ".vtu")}
 
-# So much of the solver's last words goes into the error message.
-_LAST_WORDS = 300
-
 
 class FileSolver:
     """Runs a command for each solve; an instance is the `solve` of `adapt_loop`.
@@ -92,5 +89,5 @@ class FileSolver:
         except OSError as error:
             raise RuntimeError(f"cannot run the solver {words[0]!r}: {error.strerror}") from error
         if done.returncode != 0:
-            said = (done.stderr.strip() or done.stdout.strip())[-_LAST_WORDS:]
-            raise RuntimeError(f"the solver ended with code {done.returncode}: {said}")
+            said = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()
+            raise RuntimeError(f"the solver ended with code {done.returncode}: {said[-1]}")

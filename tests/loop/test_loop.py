@@ -147,7 +147,7 @@ class TestErrorsKeepTheStepsSoFar:
             q[3] = -np.inf
             return {"u": layer(mesh.points), "q": Field(q, "cells")}
 
-        with pytest.raises(LoopError, match="iteration 0: solve returned -inf in .* at cell 3"):
+        with pytest.raises(LoopError, match=r"iteration 0: solve returned -inf in .* at cell 3"):
             self.run(solve)
 
     def test_a_field_of_the_wrong_length_is_named(self):
@@ -170,7 +170,7 @@ class TestErrorsKeepTheStepsSoFar:
         def interrupt(phase, fraction):
             raise RuntimeError("pressed stop")
 
-        with pytest.raises(MeshingError, match="iteration 1: .*pressed stop") as caught:
+        with pytest.raises(MeshingError, match=r"iteration 1: .*pressed stop") as caught:
             self.run(interpolate, adapt=starting_at(100, callback=interrupt))
         assert len(caught.value.loop.steps) == 1
 
