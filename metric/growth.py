@@ -13,9 +13,6 @@ from .graph import VertexGraph
 
 Array = NDArray[np.float64]
 
-MIXED_WEIGHT = 1.0 / 8.0
-"""Weight of the physical growth in the mixed one."""
-
 BAND = 0.25
 """A round takes the raised vertices whose determinant is at least this share of the largest."""
 
@@ -88,7 +85,7 @@ def grown(values: Array, vectors: Array, v: Array, model: str, log_factor: float
     uniform = 1.0 + np.sqrt((values * along**2).sum(axis=1))[:, None] * log_factor
     if model == "metric":
         return np.asarray(values / uniform**2)
-    mixed = physical**MIXED_WEIGHT * uniform ** (1.0 - MIXED_WEIGHT)
+    mixed = uniform * np.sqrt(np.sqrt(np.sqrt(physical / uniform)))
     return np.asarray(values / mixed**2)
 
 

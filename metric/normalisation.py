@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .algebra import compose, eigh
+from .bounds import check_bounds
 from .checks import check_tensors
 from .complexity import integral_of_exponential
 from .mesh import MeshLike, cell_volumes, diameter, point_volumes
@@ -56,7 +57,7 @@ def normalised(
     MetricError
         If `H` is not finite or not symmetric.
     ValueError
-        If `target_complexity` or `p` is out of range.
+        If `target_complexity`, `p` or `h_max` is out of range.
 
     References
     ----------
@@ -68,7 +69,9 @@ def normalised(
     values, vectors = eigh(check_tensors(H, n_points=n, dim=d, name="Hessian"))
     values = np.abs(values)
     volumes = cell_volumes(mesh)
-    size = np.asarray(diameter(mesh) if h_max is None else h_max, dtype=np.float64)
+    featureless = diameter(mesh) if h_max is None else h_max
+    _, size, _ = check_bounds(n, h_min=None, h_max=featureless, a_max=None)
+    assert size is not None  # it was given
     values = _floored(values, point_volumes(mesh, volumes), target_complexity, p, size)
     log_det = np.log(values).sum(axis=1)
     inner, outer = _exponents(p, d)
@@ -107,6 +110,6 @@ def _floored(values: Array, mass: Array, C: float, p: float, h_max: Array) -> Ar
     for _ in range(FLOOR_STEPS):
         lifted = np.maximum(relative, floor)
         integral = float(np.dot(mass, np.exp(inner * np.log(lifted).sum(axis=1))))
-        featureless = (C / integral) ** (-2.0 / d) * h_max.reshape(-1, 1) ** -2.0
+        featureless = (C / integral) ** (-2.0 / d) * h_max**-2.0
         floor = np.clip(featureless ** (1.0 / (2.0 * inner)), SMALLEST_FLOOR, 1.0)
     return np.asarray(largest * np.maximum(relative, floor))

@@ -89,7 +89,7 @@ def from_fields(
     stages.append(finishing.stage("rescaled", best.factor * base))
     stages.append(finishing.stage("bounded", bounded))
     stages.append(finishing.stage("graded", growth.metric))
-    ledger = _ledger(mesh, target, best, len(evaluations), tuple(stages), growth)
+    ledger = _ledger(mesh, target, best, evaluations, tuple(stages), growth)
     if not ledger.reached:
         logger.warning(ledger.message)
     return growth.metric, ledger
@@ -177,16 +177,20 @@ def _ledger(
     mesh: MeshLike,
     target: float,
     best: Evaluation,
-    evaluations: int,
+    evaluations: list[Evaluation],
     stages: tuple[Stage, ...],
     growth: Growth,
 ) -> Ledger:
     error = best.complexity / target - 1.0
     reached = abs(error) <= COMPLEXITY_TOLERANCE
-    message = f"complexity {best.complexity:.6g} after {evaluations} evaluations"
+    message = f"complexity {best.complexity:.6g} after {len(evaluations)} evaluations"
     if not reached:
+        found = [evaluation.complexity for evaluation in evaluations]
+        # the order of the intersections in the gradation can make the complexity jump
+        jumps = min(found) < target < max(found)
         message = (
-            f"target complexity {target:.6g} is out of reach with these bounds and this "
+            f"target complexity {target:.6g} is "
+            f"{'jumped over by' if jumps else 'out of reach with these bounds and'} the "
             f"gradation: the nearest is {best.complexity:.6g} ({100 * error:+.2g} %)"
         )
     if not growth.converged:
@@ -199,7 +203,7 @@ def _ledger(
         reached=reached,
         message=message,
         factor=best.factor,
-        evaluations=evaluations,
+        evaluations=len(evaluations),
         stages=stages,
         gradation_rounds=growth.rounds,
         distortion={**quantiles, "max": float(values.max())},

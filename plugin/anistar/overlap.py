@@ -162,11 +162,11 @@ def _lies_on(points: Float, facets: Int, vertices: Int) -> Bool:
 
 def _cross(points: Float, first: Int, second: Int) -> Bool:
     """Tell for each row whether an edge of `second` passes through the inside of `first`."""
-    apart = ~(first[:, :, None] == second[:, None, :]).any(axis=(1, 2))
+    shared = (second[:, :, None] == first[:, None, :]).any(axis=2)
     hit = np.zeros(len(first), dtype=bool)
-    rows = np.flatnonzero(apart)
-    facet = points[first[rows]]
     for i, j in itertools.combinations(range(second.shape[1]), 2):
+        rows = np.flatnonzero(~shared[:, i] & ~shared[:, j])
+        facet = points[first[rows]]
         p, q = points[second[rows, i]], points[second[rows, j]]
         crossed = _separates(facet, p, q)
         if facet.shape[2] == 2:

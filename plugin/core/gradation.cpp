@@ -1,18 +1,19 @@
 #include "gradation.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace anistar {
 namespace {
 
-/// Weight of the physical growth in the mixed one (Alauzet 2010, 6.2.1).
-constexpr double mixed_weight = 1.0 / 8.0;
-
 /// A round takes the raised vertices whose determinant is at least this share of the
 /// largest one. Dense vertices ask most of the others: to go through them first, as
-/// Dijkstra does, takes 4 to 10 times fewer raises than to take all; a narrow band takes
-/// more rounds. The share is relative, so that the unit of length does not matter.
+/// Dijkstra does, takes 4 to 10 times fewer raises than to take all; a narrow band
+/// takes more rounds. The share is relative, so that the unit of length does not
+/// matter.
 constexpr double band = 0.25;
+
+double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
 /// The eigenvalues of what p asks at the end of the edge `v`.
 template <std::size_t d>
@@ -34,8 +35,7 @@ Vector<d> grown(const Spectrum<d> &at, const Vector<d> &v,
     if (options.model != GrowthModel::Metric)
       growth = 1 + std::sqrt(at.values[k]) * length * options.log_factor;
     if (options.model == GrowthModel::Mixed)
-      growth =
-          std::pow(growth, mixed_weight) * std::pow(metric_growth, 1 - mixed_weight);
+      growth = metric_growth * eighth_root(growth / metric_growth);
     values[k] = at.values[k] / (growth * growth);
   }
   return values;
@@ -47,9 +47,10 @@ public:
             std::span<const std::int32_t> offsets,
             std::span<const std::int32_t> neighbours, const GradationOptions &options)
       : points_(points), offsets_(offsets), neighbours_(neighbours), options_(options),
-        raised_(metric.size()) {
+        raised_(metric.size()), queue_(metric.size()) {
     for (std::size_t v = 0; v < metric.size(); ++v)
       raised_[v] = determinant(metric[v]);
+    std::iota(queue_.begin(), queue_.end(), std::size_t{0});
     result_.metric = std::move(metric);
   }
 
@@ -75,16 +76,19 @@ private:
     front_.clear();
     spectra_.clear();
     double densest = 0;
-    for (const double density : raised_)
-      densest = std::max(densest, density);
-    if (densest == 0)
-      return;
-    for (std::size_t v = 0; v < raised_.size(); ++v)
-      if (raised_[v] >= band * densest) {
+    for (const std::size_t v : queue_)
+      densest = std::max(densest, raised_[v]);
+    std::erase_if(queue_, [&](std::size_t v) {
+      const bool dense = raised_[v] >= band * densest;
+      if (dense)
         front_.push_back(v);
-        spectra_.push_back(spectrum(result_.metric[v]));
-        raised_[v] = 0;
-      }
+      return dense;
+    });
+    std::sort(front_.begin(), front_.end());
+    for (const std::size_t v : front_) {
+      spectra_.push_back(spectrum(result_.metric[v]));
+      raised_[v] = 0;
+    }
   }
 
   void spread() {
@@ -96,6 +100,8 @@ private:
             grown<d>(spectra_[i], points_[q] - points_[p], options_);
         if (raise(result_.metric[q], compose<d>(values, spectra_[i].vectors),
                   options_.tolerance)) {
+          if (raised_[q] == 0)
+            queue_.push_back(q);
           raised_[q] = determinant(result_.metric[q]);
           ++result_.updates;
         }
@@ -107,7 +113,7 @@ private:
   std::span<const std::int32_t> offsets_, neighbours_;
   GradationOptions options_;
   std::vector<double> raised_; // determinants at the raised vertices, else zero
-  std::vector<std::size_t> front_;
+  std::vector<std::size_t> queue_, front_;
   std::vector<Spectrum<d>> spectra_;
   Graded<d> result_;
 };

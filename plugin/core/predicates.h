@@ -88,12 +88,16 @@ template <std::size_t d> [[nodiscard]] Orientation orientation(const Simplex<d> 
     return orientation(s[0], s[1], s[2], s[3]);
 }
 
-/// Where p lies with respect to the circumscribed ellipse of abc in the metric M: the
-/// sign of det [x_i - p | (x_i - p)^T M (x_i - p)], which is linear in M.
-/// @pre a, b, c turn left.
-[[nodiscard]] inline Side in_metric_sphere(const SymmetricTensor<2> &M,
-                                           const Vector<2> &a, const Vector<2> &b,
-                                           const Vector<2> &c, const Vector<2> &p) {
+/// A value with the sum of the magnitudes of its terms, to which its error is relative.
+struct Estimate {
+  double value, size;
+};
+
+/// det [x_i - p | (x_i - p)^T M (x_i - p)] for x = a, b, c, rounded.
+[[nodiscard]] inline Estimate sphere_determinant(const SymmetricTensor<2> &M,
+                                                 const Vector<2> &a, const Vector<2> &b,
+                                                 const Vector<2> &c,
+                                                 const Vector<2> &p) {
   const Vector<2> u = a - p, v = b - p, w = c - p;
   const double u0v1 = u[0] * v[1], u1v0 = u[1] * v[0], v0w1 = v[0] * w[1],
                v1w0 = v[1] * w[0], w0u1 = w[0] * u[1], w1u0 = w[1] * u[0];
@@ -104,20 +108,35 @@ template <std::size_t d> [[nodiscard]] Orientation orientation(const Simplex<d> 
   const auto bound_of = [&](const Vector<2> &x) {
     return xx * x[0] * x[0] + std::abs(xy * x[0] * x[1]) + yy * x[1] * x[1];
   };
-  const double det = (v0w1 - v1w0) * square(u) + (w0u1 - w1u0) * square(v) +
-                     (u0v1 - u1v0) * square(w);
-  const double size = (std::abs(v0w1) + std::abs(v1w0)) * bound_of(u) +
-                      (std::abs(w0u1) + std::abs(w1u0)) * bound_of(v) +
-                      (std::abs(u0v1) + std::abs(u1v0)) * bound_of(w);
-  if (size > detail::underflow_guard) {
-    const double bound = detail::sphere_bound_2 * size;
-    if (det > bound)
+  return {(v0w1 - v1w0) * square(u) + (w0u1 - w1u0) * square(v) +
+              (u0v1 - u1v0) * square(w),
+          (std::abs(v0w1) + std::abs(v1w0)) * bound_of(u) +
+              (std::abs(w0u1) + std::abs(w1u0)) * bound_of(v) +
+              (std::abs(u0v1) + std::abs(u1v0)) * bound_of(w)};
+}
+
+/// Where p lies with respect to the circumscribed ellipse of abc in the metric M: the
+/// sign of det [x_i - p | (x_i - p)^T M (x_i - p)], which is linear in M.
+/// @pre a, b, c turn left.
+[[nodiscard]] inline Side in_metric_sphere(const SymmetricTensor<2> &M,
+                                           const Vector<2> &a, const Vector<2> &b,
+                                           const Vector<2> &c, const Vector<2> &p) {
+  const Estimate det = sphere_determinant(M, a, b, c, p);
+  if (det.size > detail::underflow_guard) {
+    const double bound = detail::sphere_bound_2 * det.size;
+    if (det.value > bound)
       return Side::inside;
-    if (det < -bound)
+    if (det.value < -bound)
       return Side::outside;
   }
   return detail::exact_in_sphere(M, a, b, c, p);
 }
+
+/// Whether the open segment pq meets the open circumscribed ellipse of abc in the metric
+/// M. @pre a, b, c turn left, and neither p nor q lies inside.
+[[nodiscard]] bool segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
+                                        const Vector<2> &b, const Vector<2> &c,
+                                        const Vector<2> &p, const Vector<2> &q);
 
 /// The same in 3D. @pre abce has positive volume.
 [[nodiscard]] Side in_metric_sphere(const SymmetricTensor<3> &M, const Vector<3> &a,

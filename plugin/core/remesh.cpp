@@ -1,5 +1,6 @@
 #include "remesh.h"
 
+#include "agreement.h"
 #include "outline.h"
 #include "refine.h"
 #include "start.h"
@@ -108,6 +109,14 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   renumber();
   shape(w, legaliser, monitor, out.counts);
   renumber();
+
+  watch.phase("agreement");
+  const AgreementCounts agreed = agree(w, legaliser, monitor, settings.seed);
+  renumber();
+  out.counts["disagreeing_before"] = static_cast<double>(agreed.edges_before);
+  out.counts["disagreeing_after"] = static_cast<double>(agreed.edges_after);
+  out.counts["trials"] = static_cast<double>(agreed.trials);
+  out.counts["relocations"] = static_cast<double>(agreed.moves);
 
   watch.phase("report");
   extract(w, out);

@@ -30,7 +30,7 @@ RequiredEdges 1
 1
 RequiredVertices
 1
-1
+2
 Normals
 1
 0.0 0.0 1e-3
@@ -55,7 +55,7 @@ def test_a_text_mesh_with_comments_and_unknown_keywords_is_read(tmp_path):
     assert mesh.facet_tags[0] == 7
     assert mesh.edges.tolist() == [[0, 1]]
     assert mesh.edge_tags.tolist() == [9]
-    assert mesh.corners.tolist() == [0, 3]
+    assert mesh.corners.tolist() == [0, 1, 3]
     assert (fields, report.warnings) == ({}, ())
     assert validate(mesh) == []
 
@@ -251,6 +251,14 @@ def test_gmsh_4_has_physical_names(tmp_path):
     assert mesh.cell_tags.tolist() == [6]
     assert mesh.facet_tags.tolist() == [5, 0, 0]
     assert validate(mesh) == []
+
+
+def test_one_name_may_be_used_in_two_dimensions(tmp_path):
+    (tmp_path / "m.msh").write_text(GMSH_4.replace("wall", "air"))
+    mesh, _ = formats.read(tmp_path / "m.msh")
+    assert mesh.names == {(1, 5): "air", (2, 6): "air"}
+    formats.write(tmp_path / "n.msh", mesh)
+    assert formats.read(tmp_path / "n.msh")[0].names == mesh.names
 
 
 def test_gmsh_data_on_some_elements_goes_by_number(tmp_path):

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from meshes import annulus, slit, square, two_region_cube, two_regions
+from meshes import annulus, rectangle_with_jitter, slit, square, two_region_cube, two_regions
 
 from anistar import formats
 from anistar.fields import Field, as_fields
@@ -172,6 +172,13 @@ def test_vtk_itself_reads_what_is_written(tmp_path):
     assert grid.GetPointData().GetArray("metric").GetTuple(5) == tuple(metric[0].ravel())
     assert grid.GetCellData().GetArray("medit:ref").GetRange() == (0.0, 7.0)
     assert grid.GetNumberOfPoints() == mesh.n_points
+
+
+@pytest.mark.parametrize("suffix", ALL)
+def test_a_mesh_without_tags_stays_without(tmp_path, suffix):
+    mesh = rectangle_with_jitter(3)
+    formats.write(tmp_path / f"m{suffix}", mesh)
+    assert_same_arrays(formats.read(tmp_path / f"m{suffix}")[0], mesh)
 
 
 def test_negative_and_large_tags_come_back(tmp_path):

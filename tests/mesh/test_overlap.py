@@ -17,6 +17,12 @@ def joined(*parts):
     }
 
 
+def kinds_of(points, cells):
+    """Return what the validator finds in arrays that the constructor refuses."""
+    mesh = Mesh._trusted(points=np.array(points, float), cells=np.array(cells, np.int32))
+    return [violation.kind for violation in validate(mesh)]
+
+
 def shifted(mesh, *shift, scale=1.0):
     return scale * mesh.points + np.array(shift), mesh.cells
 
@@ -39,13 +45,7 @@ def test_separate_parts_that_overlap_are_refused(parts):
     mesh = joined(*parts)
     with pytest.raises(ValueError, match=r"cells? \d+ .*overlap"):
         Mesh(**mesh)
-    kinds = [
-        violation.kind
-        for violation in validate(
-            Mesh._trusted(**{**mesh, "cells": mesh["cells"].astype(np.int32)})
-        )
-    ]
-    assert "overlap" in kinds
+    assert "overlap" in kinds_of(**mesh)
 
 
 @pytest.mark.parametrize(
@@ -105,11 +105,22 @@ def test_three_cells_on_one_facet_are_refused():
         Mesh(points=points, cells=[[0, 1, 2], [1, 0, 3], [0, 1, 4]])
 
 
+def test_two_cells_that_share_a_point_and_cross_are_refused():
+    points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.3, 0.2, 0.9], [0.2, 0.3, -0.9],
+              [3.0, 3.0, 0.1]]  # fmt: skip
+    cells = np.array([[0, 1, 2, 3], [1, 4, 5, 6]])
+    if np.linalg.det(np.array(points)[cells[1, 1:]] - points[1]) < 0:
+        cells[1, 2:] = cells[1, :1:-1]
+    with pytest.raises(ValueError, match=r"cells \d and \d overlap: their boundary facets cross"):
+        Mesh(points=points, cells=cells)
+
+
 def test_a_hanging_point_is_refused():
     points = [[0, 0], [1, 0], [0, 1], [0.5, 0], [0.2, -1], [0.8, -1]]
     cells = [[0, 1, 2], [0, 4, 3], [3, 4, 5], [3, 5, 1]]
     with pytest.raises(ValueError, match="point 3 hangs on a facet of cell 0"):
         Mesh(points=points, cells=cells)
+    assert "hanging" in kinds_of(points, cells)
 
 
 def test_a_hanging_point_in_3d_is_refused():
@@ -124,6 +135,7 @@ def test_doubled_nodes_of_a_crack_are_refused():
     parts = joined(shifted(square(2), 0, 0), shifted(square(2), 1, 0))
     with pytest.raises(ValueError, match=r"points 2 and 9 of the boundary coincide: cracks"):
         Mesh(**parts)
+    assert "coincident" in kinds_of(**parts)
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])

@@ -68,53 +68,69 @@ def assembled(raw: RawMesh, path: Path) -> tuple[Mesh, dict[str, Field], ReadRep
 def _assembled(raw: RawMesh, path: Path) -> tuple[Mesh, dict[str, Field], ReadReport]:
     dim = _domain_dim(raw)
     blocks = {d: _merged(raw, d) for d in range(dim + 1)}
-    cells = blocks[dim]
     for violation in point_violations(raw.points):
         raise ValueError(violation.message)
     for block in blocks.values():
         _check_indices(block, len(raw.points))
+    cells = blocks[dim]
     points = _in_dimension(raw.points, dim, cells.rows)
     used = np.zeros(len(points), dtype=bool)
     used[cells.rows] = True
+    number = np.cumsum(used) - 1
     rows, flipped = _flipped(points, cells.rows)
     notes = list(raw.warnings)
-    dropped = int((~used).sum())
-    _note(notes, int(flipped.sum()), "inverted cell(s) flipped, the first is cell", flipped)
-    _note(notes, dropped, "point(s) without a cell dropped, the first is point", ~used)
-    number = np.cumsum(used) - 1
-    arrays: dict[str, Any] = {"points": points[used], "cells": number[rows]}
-    arrays["cell_tags"] = _tags(cells)
-    repeated = 0
-    for name, block in _lower(blocks, dim).items():
-        unique, tags, count, clash = _unrepeated(block)
-        _require_used(name, unique, used)
-        arrays[f"{name}s"], arrays[f"{name}_tags"] = number[unique], tags
-        repeated += count
-        if clash:
-            notes.append(f"{clash} {name}(s) carry several tags, the first is kept")
-    corners = np.unique(np.r_[raw.corners, blocks[0].rows.ravel()].astype(np.int64))
-    inside = (corners >= 0) & (corners < len(points))
-    if not inside.all():
-        raise ValueError(f"corner refers to point {corners[~inside][0]} of {len(points)}")
-    arrays["corners"] = number[corners[used[corners]]]
-    names = {key: name for key, name in raw.names.items() if key[0] <= dim}
-    mesh = Mesh(**arrays, names=names)
+    _note(notes, flipped, "inverted cell(s) flipped, the first is cell")
+    _note(notes, ~used, "point(s) without a cell dropped, the first is point")
+    lower, repeated = _lower_arrays(blocks, dim, used, notes)
+    mesh = Mesh(
+        points=points[used],
+        cells=number[rows],
+        cell_tags=_tags(cells),
+        corners=number[_corners(raw, blocks[0], used)],
+        names={key: name for key, name in raw.names.items() if key[0] <= dim},
+        **lower,
+    )
     fields = _fields(raw, cells, used, dim)
     for text in notes:
         _log.warning("%s: %s", path, text)
     report = ReadReport(
         path=str(path),
         flipped_cells=int(flipped.sum()),
-        dropped_points=dropped,
+        dropped_points=int((~used).sum()),
         repeated_facets=repeated,
         warnings=tuple(notes),
     )
     return mesh, fields, report
 
 
-def _note(notes: list[str], count: int, text: str, mask: Array) -> None:
-    if count:
-        notes.append(f"{count} {text} {int(np.argmax(mask))}")
+def _lower_arrays(
+    blocks: dict[int, Block], dim: int, used: Array, notes: list[str]
+) -> tuple[dict[str, Array], int]:
+    """Return facets and ridges with their tags, each once, and how many were repeated."""
+    number = np.cumsum(used) - 1
+    arrays: dict[str, Array] = {}
+    repeated = 0
+    for below, name in enumerate(("facet", "edge")[: dim - 1], start=1):
+        rows, tags, count, clash = _unrepeated(blocks[dim - below])
+        _require_used(name, rows, used)
+        arrays[f"{name}s"], arrays[f"{name}_tags"] = number[rows], tags
+        repeated += count
+        if clash:
+            notes.append(f"{clash} {name}(s) carry several tags, the first is kept")
+    return arrays, repeated
+
+
+def _corners(raw: RawMesh, vertices: Block, used: Array) -> Array:
+    corners = np.unique(np.r_[raw.corners, vertices.rows.ravel()].astype(np.int64))
+    inside = (corners >= 0) & (corners < len(used))
+    if not inside.all():
+        raise ValueError(f"corner refers to point {corners[~inside][0]} of {len(used)}")
+    return np.asarray(corners[used[corners]])
+
+
+def _note(notes: list[str], mask: Array, text: str) -> None:
+    if mask.any():
+        notes.append(f"{mask.sum()} {text} {np.argmax(mask)}")
 
 
 def _domain_dim(raw: RawMesh) -> int:
@@ -179,15 +195,10 @@ def _in_dimension(points: Array, dim: int, cells: Array) -> Array:
 
 
 def _flipped(points: Array, cells: Array) -> tuple[Array, Array]:
-    flat, inverted = volume_signs(points, cells)
-    del flat  # Mesh refuses those and names them
+    _, inverted = volume_signs(points, cells)
     turned = cells.copy()
     turned[inverted, -2:] = cells[inverted, :-3:-1]
     return turned, inverted
-
-
-def _lower(blocks: dict[int, Block], dim: int) -> dict[str, Block]:
-    return {"facet": blocks[1]} if dim == 2 else {"facet": blocks[2], "edge": blocks[1]}
 
 
 def _unrepeated(block: Block) -> tuple[Array, Array, int, int]:

@@ -7,6 +7,7 @@ format name means ANSYS there.
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -28,7 +29,12 @@ def read(path: Path) -> RawMesh:
     """Read a mesh with its physical names."""
     if gmsh_text.is_text_2(path):
         return gmsh_text.read(path)
-    return meshio_guard.read(path, "gmsh")
+    raw = meshio_guard.read(path, "gmsh")
+    # meshio keys the names by the name alone and so loses one that two dimensions share.
+    section = re.search(rb"\$PhysicalNames(.*?)\$EndPhysicalNames", path.read_bytes(), re.DOTALL)
+    if section:
+        raw.names = gmsh_text.physical_names(section[1].decode("utf-8", errors="replace"))
+    return raw
 
 
 def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:

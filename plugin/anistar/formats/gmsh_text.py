@@ -75,9 +75,12 @@ def _read(text: str) -> RawMesh:
             raise ValueError(f"it has no section {name}")
     nodes = _rows("Nodes", parsed(content["Nodes"]), 4)
     index = _Numbers("node", nodes[:, 0])
-    blocks, numbers = _elements(parsed(content["Elements"]), index)
-    raw = RawMesh(nodes[:, 1:4].copy(), blocks, names=_names(content.get("PhysicalNames", "")))
-    raw.labels = _labels(content.get("Comments", ""))
+    labels = _labels(content.get("Comments", ""))
+    blocks, numbers = _elements(parsed(content["Elements"]), index, ours=labels is not None)
+    raw = RawMesh(
+        nodes[:, 1:4].copy(), blocks, names=physical_names(content.get("PhysicalNames", ""))
+    )
+    raw.labels = labels or set()
     for name, body in sections:
         if name == "NodeData":
             _add_node_data(raw, index, body)
@@ -88,12 +91,15 @@ def _read(text: str) -> RawMesh:
 
 def comment(labels: list[str]) -> str:
     """Return a section that tells which data are labels; Gmsh itself stores doubles only."""
-    return f"$Comments\n{_LABELS}{json.dumps(labels)}\n$EndComments\n" if labels else ""
+    return f"$Comments\n{_LABELS}{json.dumps(labels)}\n$EndComments\n"
 
 
-def _labels(body: str) -> set[str]:
-    line = next((line for line in body.splitlines() if line.startswith(_LABELS)), _LABELS + "[]")
-    return set(json.loads(line.removeprefix(_LABELS)))
+def _labels(body: str) -> set[str] | None:
+    """Return what `comment` noted, None in a file that is not ours."""
+    for line in body.splitlines():
+        if line.startswith(_LABELS):
+            return set(json.loads(line.removeprefix(_LABELS)))
+    return None
 
 
 class _Numbers:
@@ -122,13 +128,18 @@ def _rows(name: str, numbers: Array, width: int) -> Array:
     return np.asarray(numbers[1:].reshape(count, width))
 
 
-def _names(body: str) -> dict[tuple[int, int], str]:
+def physical_names(body: str) -> dict[tuple[int, int], str]:
+    """Return the names in the body of the section PhysicalNames by (dim, tag)."""
     found = re.findall(r'^\s*(\d+)\s+(-?\d+)\s+"(.*)"', body, re.MULTILINE)
     return {(int(dim), int(tag)): name for dim, tag, name in found}
 
 
-def _elements(numbers: Array, index: _Numbers) -> tuple[list[Block], list[Array]]:
-    """Return runs of elements of equal type, and the number of each element."""
+def _elements(numbers: Array, index: _Numbers, *, ours: bool) -> tuple[list[Block], list[Array]]:
+    """Return runs of elements of equal type, and the number of each element.
+
+    Without physical groups the numbers of the geometric entities are the only tags; in a file
+    that we wrote they mean nothing.
+    """
     values = integers(numbers)
     blocks: list[Block] = []
     labels: list[Array] = []
@@ -147,8 +158,7 @@ def _elements(numbers: Array, index: _Numbers) -> tuple[list[Block], list[Array]
         at += run.size
     if sum(len(label) for label in labels) != values[0]:
         raise ValueError(f"Elements announces {values[0]} rows, another number follows")
-    # Without physical groups the numbers of the geometric entities are the only tags.
-    named = any(np.any(block.tags) for block in blocks if block.tags is not None)
+    named = ours or any(np.any(block.tags) for block in blocks if block.tags is not None)
     for block in blocks:
         entity = block.data.pop("entity")
         block.tags = block.tags if named else entity

@@ -46,7 +46,9 @@ def read_mesh(path: Path) -> RawMesh:
         Block(kind, table[:, :-1] - 1, table[:, -1])
         for kind, table in _tables(container, {**_BLOCKS, **_REFUSED})
     ]
-    corners = container.tables.get("Corners", np.zeros((0, 1), np.int64))[:, 0] - 1
+    nothing = np.zeros((0, 1), np.int64)
+    kept = [container.tables.get(keyword, nothing) for keyword in ("Corners", "RequiredVertices")]
+    corners = np.concatenate(kept)[:, 0] - 1
     raw = RawMesh(container.points, blocks, corners)
     raw.names = {(int(dim), int(tag)): str(name) for dim, tag, name in _names(container, path)}
     for suffix in (".sol", ".solb"):

@@ -1,0 +1,101 @@
+#include "moves.h"
+
+#include <cmath>
+
+namespace anistar {
+namespace {
+
+/// Step of the pliant forces, the damping of the published algorithm.
+constexpr double pliant_step = .2;
+/// Over-relaxation is unstable where the metric varies: stop short of the circumcentres.
+constexpr double odt_step = .8;
+/// A move may shrink a cell of the star to this fraction of its area.
+constexpr double smallest_area = .05;
+
+/// Centre of the circumscribed ellipse of v, a, b in their mean metric, from v, weighted
+/// by the area in that metric.
+struct Weighted {
+  Vector<2> sum = Vector<2>::Zero();
+  double weight = 0;
+};
+
+void add_circumcentre(const Vertex<2> &v, const Vertex<2> &a, const Vertex<2> &b,
+                      Weighted &mean) {
+  const SymmetricTensor<2> M = v.weight * v.M + a.weight * a.M + b.weight * b.M;
+  const Vector<2> p = a.x - v.x, q = b.x - v.x;
+  const double area = cross(p, q), det = determinant<2>(M);
+  const double pp = quadratic<2>(M, p), qq = quadratic<2>(M, q);
+  const double gx = (pp * q[1] - qq * p[1]) / (2 * area);
+  const double gy = (qq * p[0] - pp * q[0]) / (2 * area);
+  const Vector<2> centre((M(1, 1) * gx - M(0, 1) * gy) / det,
+                         (M(0, 0) * gy - M(0, 1) * gx) / det);
+  const double weight = area / std::cbrt(v.weight * a.weight * b.weight);
+  mean.sum += weight * centre;
+  mean.weight += weight;
+}
+
+} // namespace
+
+Vector<2> pliant_displacement(const Triangulation<2> &mesh, const Vertex<2> &v,
+                              std::span<const HalfFacet> star) {
+  Vector<2> force = Vector<2>::Zero();
+  const auto pull = [&](const Vertex<2> &neighbour) {
+    const double length = edge_length(v, neighbour);
+    const double fourth = length * length * length * length;
+    force -= ((1 - fourth) * std::exp(-fourth) / length) * (neighbour.x - v.x);
+  };
+  for (HalfFacet h : star)
+    pull(mesh.vertex(mesh.facet(h)[0]));
+  return pliant_step * force;
+}
+
+Vector<2> odt_displacement(const Triangulation<2> &mesh, const Vertex<2> &v,
+                           std::span<const HalfFacet> star) {
+  Weighted mean;
+  for (HalfFacet h : star) {
+    const auto [a, b] = mesh.facet(h);
+    add_circumcentre(v, mesh.vertex(a), mesh.vertex(b), mean);
+  }
+  return (odt_step / mean.weight) * mean.sum;
+}
+
+bool may_move(const Triangulation<2> &mesh, const Vector<2> &from, const Vector<2> &x,
+              std::span<const HalfFacet> star) {
+  for (HalfFacet h : star) {
+    const auto [ia, ib] = mesh.facet(h);
+    const Vector<2> &a = mesh.vertex(ia).x, &b = mesh.vertex(ib).x;
+    if (cross(a - x, b - x) <= smallest_area * cross(a - from, b - from) ||
+        orientation(x, a, b) != Orientation::positive)
+      return false;
+  }
+  return true;
+}
+
+SlidingVertex::SlidingVertex(Workspace &w, std::span<const HalfFacet> star, Index v)
+    : w_(w) {
+  for (HalfFacet h : star)
+    for (std::size_t k = 1; k < 3; ++k) {
+      const HalfFacet spoke(h.cell(), (h.facet() + k) % 3);
+      const Index record = w.mesh.constraint(spoke);
+      if (record == none || w.curve(edge(record)).is_frozen)
+        continue;
+      (edge(record).v1 == v ? in_ : out_) = record;
+    }
+}
+
+Vector<2> SlidingVertex::at(double dt) const { return w_.curve(in()).at(in().t1 + dt); }
+
+bool SlidingVertex::may_slide(double dt) const {
+  const Curve &curve = w_.curve(in());
+  const double t = in().t1 + dt;
+  return in().t0 < t && t < out().t1 &&
+         relative_sagitta(curve, in().t0, t) <= w_.hausdorff &&
+         relative_sagitta(curve, t, out().t1) <= w_.hausdorff;
+}
+
+void SlidingVertex::commit(double dt) const {
+  edge(in_).t1 += dt;
+  edge(out_).t0 = edge(in_).t1;
+}
+
+} // namespace anistar
