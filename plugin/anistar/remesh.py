@@ -266,9 +266,7 @@ def _tag_measures(geometry: Mesh, new: Mesh) -> tuple[TagMeasure, ...]:
             raise MeshingError(f"the new mesh lost {kind} tag {lost[0]}")
         for tag, measure in before.items():
             name = geometry.names.get((dim, tag), "")
-            found.append(
-                TagMeasure(dim=dim, tag=tag, name=name, before=measure, after=after[tag])
-            )
+            found.append(TagMeasure(dim=dim, tag=tag, name=name, before=measure, after=after[tag]))
     return tuple(found)
 
 

@@ -1,0 +1,226 @@
+"""One adaptation: metric from fields, new mesh, fields on the new mesh."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .aliases import canonical
+from .fields import Field, as_fields
+from .mesh import Mesh
+from .metric import MetricOptions, from_fields
+from .remesh import RemeshOptions, remesh
+from .report import as_builtin, fields_of
+from .transfer import TransferOptions, TransferReport, transfer
+
+Floats = NDArray[np.float64]
+Projection = Callable[[Floats, int], Floats]
+
+
+def _transfer_to_a_remesh() -> TransferOptions:
+    # New points of a curved boundary lie on the smooth curve, so slightly off the old chords.
+    return TransferOptions(outside="nearest")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AdaptOptions:
+    """The options of every stage of an adaptation.
+
+    Parameters
+    ----------
+    metric : MetricOptions
+        From fields to a metric.
+    remesh : RemeshOptions
+        From a metric to a mesh.
+    transfer : TransferOptions
+        From the old mesh to the new one; by default points outside take the nearest value.
+    metric_fields : sequence of str, optional
+        Names of the fields that make the metric; None means every scalar and vector field at
+        the points.
+
+    Raises
+    ------
+    TypeError
+        If `metric_fields` is a string or holds something else than strings.
+    ValueError
+        If `metric_fields` is empty.
+    """
+
+    metric: MetricOptions = field(default_factory=MetricOptions)
+    remesh: RemeshOptions = field(default_factory=RemeshOptions)
+    transfer: TransferOptions = field(default_factory=_transfer_to_a_remesh)
+    metric_fields: Sequence[str] | None = None
+
+    def __post_init__(self) -> None:
+        names = self.metric_fields
+        if names is None:
+            return
+        if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+            raise TypeError(f"metric_fields must be a sequence of names, not {names!r}")
+        if not len(names):
+            raise ValueError("metric_fields is empty: give at least one name, or None for all")
+        object.__setattr__(self, "metric_fields", tuple(names))
+
+    @classmethod
+    def from_dict(cls, options: Mapping[str, Any]) -> AdaptOptions:
+        """Return options from plain names: ours, PETSc's or Mmg's.
+
+        Parameters
+        ----------
+        options : mapping
+            Options of any stage by name, for instance ``{"target_complexity": 1e4}``,
+            ``{"dm_plex_metric": {"h_min": 1e-3}}`` or ``{"hmin": 1e-3}``; the stages ``metric``,
+            ``remesh`` and ``transfer`` may also be given as mappings.
+
+        Raises
+        ------
+        ValueError
+            If a name is unknown or given twice.
+        """
+        stages: dict[str, Any] = {
+            "metric": MetricOptions,
+            "remesh": RemeshOptions,
+            "transfer": TransferOptions,
+        }
+        owners = {item.name: stage for stage in stages for item in fields_of(stages[stage])}
+        chosen: dict[str, dict[str, Any]] = {stage: {} for stage in stages}
+        chosen["transfer"] = {"outside": "nearest"}
+        known = canonical(options, (*owners, "metric_fields"))
+        names = known.pop("metric_fields", None)
+        for name, value in known.items():
+            chosen[owners[name]][name] = value
+        made = {stage: build(**chosen[stage]) for stage, build in stages.items()}
+        return cls(**made, metric_fields=names)
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptReport:
+    """What an adaptation did.
+
+    Attributes
+    ----------
+    metric_fields : tuple of str
+        The fields that made the metric.
+    metric : Ledger
+        Complexity after every stage of the metric.
+    remesh : RemeshReport
+        What the mesher did.
+    transfer : TransferReport
+        What the transfer did.
+    seconds : float
+        Wall time of the whole adaptation.
+    """
+
+    metric_fields: tuple[str, ...]
+    metric: Any
+    remesh: Any
+    transfer: TransferReport
+    seconds: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins only; the keys are those of the attributes."""
+        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+
+
+@dataclass(frozen=True, eq=False)
+class Adapted:
+    """The new mesh, the fields and the metric on it, and the report."""
+
+    mesh: Mesh
+    fields: dict[str, Any]
+    metric: Floats
+    report: AdaptReport
+
+
+def adapt(
+    mesh: Mesh,
+    fields: Mapping[str, Field | ArrayLike],
+    options: AdaptOptions | None = None,
+    *,
+    geometry: Mesh | None = None,
+    project: Projection | None = None,
+) -> Adapted:
+    """Adapt a mesh to its fields and carry the fields over.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh that carries the fields.
+    fields : mapping of str to Field or array
+        The fields; a bare array means points.
+    options : AdaptOptions, optional
+        Options of every stage.
+    geometry : Mesh, optional
+        The mesh whose boundary is the geometry; `mesh` by default.
+    project : callable, optional
+        ``project(points, facet_tag)`` moves (k, d) boundary points onto the true boundary.
+
+    Returns
+    -------
+    Adapted
+        Fields come back in the form they were given (bare array or `Field`).
+
+    Raises
+    ------
+    ValueError
+        If a field does not fit the mesh, is unknown, or holds NaN where the metric needs it.
+    MeshingError
+        If the mesher cannot finish.
+    """
+    started = time.perf_counter()
+    options = options if options is not None else AdaptOptions()
+    checked = as_fields(mesh, fields)
+    names = metric_field_names(checked, options.metric_fields)
+    M, ledger = from_fields(mesh, {name: checked[name] for name in names}, options.metric)
+    done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
+    carried = transfer(mesh, fields, done.mesh, options.transfer)
+    report = AdaptReport(
+        metric_fields=names,
+        metric=ledger,
+        remesh=done.report,
+        transfer=carried.report,
+        seconds=time.perf_counter() - started,
+    )
+    return Adapted(done.mesh, carried.fields, done.metric, report)
+
+
+def metric_field_names(
+    fields: Mapping[str, Field], wanted: Sequence[str] | None
+) -> tuple[str, ...]:
+    """Return the names of the fields that make the metric.
+
+    Raises
+    ------
+    ValueError
+        If a wanted field is unknown or cannot make a metric, or if there is none.
+    """
+    usable = tuple(
+        name
+        for name, field in fields.items()
+        if field.on == "points" and field.kind in ("scalar", "vector")
+    )
+    for name in wanted or ():
+        if name not in fields:
+            raise ValueError(f"unknown field {name!r}; the fields are: {_listed(fields)}")
+        if name not in usable:
+            field = fields[name]
+            raise ValueError(
+                f"field {name!r} is a {field.kind} on {field.on}: a metric needs a scalar or a "
+                "vector at the points"
+            )
+    names = tuple(wanted) if wanted is not None else usable
+    if not names:
+        raise ValueError(
+            "no scalar or vector field at the points to make a metric of; the fields are: "
+            f"{_listed(fields)}"
+        )
+    return names
+
+
+def _listed(fields: Mapping[str, Field]) -> str:
+    return ", ".join(f"{name} ({field.kind}, {field.on})" for name, field in fields.items()) or "-"

@@ -1,0 +1,110 @@
+"""scikit-fem meshes to `Mesh` and back."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mesh import Mesh
+from ..topology import RowKeys
+
+try:
+    from skfem import MeshTet, MeshTri
+except ImportError as error:
+    error.add_note("anistar's scikit-fem adapter needs it: pip install 'anistar[skfem]'")
+    raise
+
+
+def to_skfem(mesh: Mesh) -> Any:
+    """Return the mesh as a `skfem.MeshTri` or `skfem.MeshTet`.
+
+    Named facet tags become ``boundaries`` and named cell tags ``subdomains``; a tag other than 0
+    without a name is called by its number.
+
+    Parameters
+    ----------
+    mesh : Mesh
+
+    Returns
+    -------
+    skfem.MeshTri or skfem.MeshTet
+        Vertices and cells in the same order.
+    """
+    build = MeshTri if mesh.dim == 2 else MeshTet
+    # sort_t would renumber the corners of each cell; scikit-fem needs none of it for P1 and P2.
+    bare = build(np.ascontiguousarray(mesh.points.T), np.ascontiguousarray(mesh.cells.T))
+    rows = _rows_of(np.asarray(bare.facets.T), mesh.facets, mesh.n_points)
+    boundaries = {
+        _name(mesh, mesh.dim - 1, tag): rows[mesh.facet_tags == tag]
+        for tag in _shown(mesh, mesh.dim - 1, mesh.facet_tags)
+    }
+    subdomains = {
+        _name(mesh, mesh.dim, tag): np.flatnonzero(mesh.cell_tags == tag)
+        for tag in _shown(mesh, mesh.dim, mesh.cell_tags)
+    }
+    return bare.with_boundaries(boundaries).with_subdomains(subdomains)
+
+
+def from_skfem(other: Any) -> Mesh:
+    """Return a `skfem.MeshTri` or `skfem.MeshTet` as a `Mesh`.
+
+    Boundaries and subdomains become tags 1, 2, ... in the order of their names, with these names.
+
+    Raises
+    ------
+    TypeError
+        If the mesh is of another type.
+    ValueError
+        If boundaries or subdomains overlap, which one tag for each facet or cell cannot say.
+    """
+    if not isinstance(other, MeshTri | MeshTet) or other.t.shape[0] != other.p.shape[0] + 1:
+        raise TypeError(f"only MeshTri and MeshTet are supported, not {type(other).__name__}")
+    points, cells = np.asarray(other.p.T), np.array(other.t.T)
+    dim = points.shape[1]
+    legs = points[cells[:, 1:]] - points[cells[:, :1]]
+    inverted = np.linalg.det(legs) < 0
+    cells[inverted, -2:] = cells[inverted, :-3:-1]
+    chosen, facet_tags, names = _tagged(other.boundaries, other.facets.shape[1], dim - 1)
+    _, cell_tags, regions = _tagged(other.subdomains, len(cells), dim)
+    return Mesh(
+        points=points,
+        cells=cells,
+        cell_tags=cell_tags,
+        facets=np.asarray(other.facets.T)[chosen],
+        facet_tags=facet_tags[chosen],
+        names={**names, **regions},
+    )
+
+
+def _tagged(
+    groups: dict[str, Any] | None, count: int, dim: int
+) -> tuple[NDArray[np.intp], NDArray[np.int32], dict[tuple[int, int], str]]:
+    tags = np.zeros(count, np.int32)
+    names: dict[tuple[int, int], str] = {}
+    for tag, (name, members) in enumerate(sorted((groups or {}).items()), start=1):
+        rows = np.asarray(members)
+        if tags[rows].any():
+            first = names[dim, int(tags[rows].max())]
+            raise ValueError(f"{name!r} overlaps {first!r}: one entity can carry one tag only")
+        tags[rows] = tag
+        names[dim, tag] = name
+    return np.flatnonzero(tags), tags, names
+
+
+def _rows_of(table: NDArray[np.int32], facets: NDArray[np.int32], n: int) -> NDArray[np.int64]:
+    """Return the row of each facet in a table of all facets."""
+    encoder = RowKeys(table, n)
+    keys = encoder.encode(table)
+    order = np.argsort(keys)
+    found = np.searchsorted(keys[order], encoder.encode(facets))
+    return np.asarray(order[found], dtype=np.int64)
+
+
+def _shown(mesh: Mesh, dim: int, tags: NDArray[np.int32]) -> list[int]:
+    return [int(tag) for tag in np.unique(tags) if tag != 0 or (dim, 0) in mesh.names]
+
+
+def _name(mesh: Mesh, dim: int, tag: int) -> str:
+    return mesh.names.get((dim, tag), str(tag))

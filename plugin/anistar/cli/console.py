@@ -1,0 +1,66 @@
+"""Tables, progress and JSON on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from ..report import to_json
+
+
+def show_json(report: Any) -> None:
+    """Print the report as JSON on stdout."""
+    print(to_json(report))
+
+
+def show_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+    """Print a table on stdout; numbers go to the right."""
+    table = Table(title=escape(title), box=box.SIMPLE_HEAD, title_justify="left")
+    for index, column in enumerate(columns):
+        is_number = bool(rows) and isinstance(rows[0][index], int | float)
+        table.add_column(column, justify="right" if is_number else "left")
+    for row in rows:
+        table.add_row(*(escape(as_text(value)) for value in row))
+    Console().print(table)
+
+
+def say(text: str) -> None:
+    """Print one line on stdout."""
+    Console().print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def as_text(value: Any) -> str:
+    """Return a number or text as a cell of a table."""
+    if value is None:
+        return "-"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return str(value)
+
+
+@contextmanager
+def progress_bar(total: int | None, *, is_quiet: bool = False) -> Iterator[Any]:
+    """Give a callable ``advance(what)`` that moves a progress bar on stderr."""
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        transient=True,
+        disable=is_quiet,
+    )
+    with bar:
+        task = bar.add_task("starting", total=total)
+
+        def advance(what: str) -> None:
+            bar.update(task, advance=1, description=what)
+
+        yield advance

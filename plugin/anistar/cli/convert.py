@@ -1,0 +1,30 @@
+"""``anistar convert``."""
+
+from __future__ import annotations
+
+import argparse
+
+from ..formats import read_with_report, write
+from . import console
+from .files import writable
+
+SUMMARY = "write a mesh and its fields in another format"
+EXAMPLE = "anistar convert in.msh out.vtu"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("input", help="mesh; in.mesh picks up in.sol")
+    parser.add_argument("output", help="the suffix chooses the format")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command."""
+    output = writable(arguments.output)
+    mesh, fields, report = read_with_report(arguments.input)
+    write(output, mesh, fields)
+    if arguments.json:
+        console.show_json(report)
+    else:
+        console.say(f"{arguments.output}: {mesh.n_points} points, {mesh.n_cells} cells")
+    return 0

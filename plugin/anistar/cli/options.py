@@ -1,0 +1,117 @@
+"""Flags for the options of every stage, under our names, PETSc's and Mmg's."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from typing import Any
+
+from ..adapt import AdaptOptions
+from ..aliases import MMG
+from ..metric.options import PETSC_PREFIX
+from ..transfer import OUTSIDE
+
+# Foreign codes say "off" by a number where we say "off".
+_OFF_NUMBERS = {"gradation_factor": -1.0, "a_max": 0.0}
+
+
+def _number_or_off(name: str) -> Any:
+    def parsed(text: str) -> float | str | None:
+        if text == "auto":
+            return text
+        value = None if text == "off" else float(text)
+        return None if value == _OFF_NUMBERS.get(name) else value
+
+    parsed.__name__ = "number or 'off'"
+    return parsed
+
+
+_METRIC: dict[str, tuple[Any, str]] = {
+    "target_complexity": (
+        float,
+        "complexity of the metric; a 2D mesh gets about 1.15 times as many points",
+    ),
+    "target_elements": (float, "number of elements to aim at, instead of a complexity"),
+    "p": (float, "norm Lp in which the interpolation error is smallest (default 2)"),
+    "h_min": (float, "smallest size, in mesh units (Mmg: -hmin)"),
+    "h_max": (float, "largest size, in mesh units (Mmg: -hmax)"),
+    "a_max": (_number_or_off("a_max"), "largest anisotropy, or off"),
+    "gradation_factor": (
+        _number_or_off("gradation_factor"),
+        "growth of sizes from edge to edge, or off, or auto (Mmg: -hgrad)",
+    ),
+    "gradation_model": (str, "physical, metric or mixed"),
+    "method": (str, "recovery of the Hessian: auto, quadratic or l2"),
+}
+_REMESH: dict[str, tuple[Any, str]] = {
+    "hausdorff_number": (
+        float,
+        "largest distance from a curved boundary, relative to the size (Mmg: -hausd)",
+    ),
+    "ridge_angle": (float, "angle in degrees from which a corner is kept (Mmg: -ar)"),
+    "max_vertices": (int, "stop at this number of vertices"),
+    "max_seconds": (float, "stop after this time"),
+    "seed": (int, "seed of the random numbers"),
+    "threads": (int, "number of threads"),
+}
+
+
+def add_metric_options(parser: argparse.ArgumentParser) -> None:
+    """Add the flags of `MetricOptions`."""
+    _add(parser.add_argument_group("metric"), _METRIC)
+
+
+def add_remesh_options(parser: argparse.ArgumentParser) -> None:
+    """Add the flags of `RemeshOptions`."""
+    _add(parser.add_argument_group("remesh"), _REMESH)
+
+
+def add_outside_option(parser: argparse.ArgumentParser, default: str) -> None:
+    """Add the flag for target points outside the source mesh."""
+    parser.add_argument(
+        "--outside",
+        choices=OUTSIDE,
+        default=default,
+        help=f"values at points outside the source mesh (default {default})",
+    )
+
+
+def adapt_options(arguments: argparse.Namespace, **extra: Any) -> AdaptOptions:
+    """Return the options that were given as flags."""
+    names = (*_METRIC, *_REMESH, "outside")
+    given = {name: value for name, value in vars(arguments).items() if name in names}
+    return AdaptOptions.from_dict({**given, **extra})
+
+
+def canonical_flags(words: Sequence[str]) -> list[str]:
+    """Return the words with PETSc's and Mmg's flags replaced by ours.
+
+    ``-hmin``, ``--hmin``, ``--h_min`` and ``-dm_plex_metric_h_min`` all become ``--h-min``.
+    """
+    return [_canonical(word) for word in words]
+
+
+def numbers(text: str) -> tuple[float, ...]:
+    """Parse comma-separated numbers."""
+    return tuple(float(part) for part in text.split(",") if part)
+
+
+def _canonical(word: str) -> str:
+    flag, equals, value = word.partition("=")
+    bare = flag.lstrip("-").removeprefix(PETSC_PREFIX + "_")
+    name = MMG.get(bare, bare.replace("-", "_"))
+    if not flag.startswith("-") or name not in (*_METRIC, *_REMESH) or flag == "-p":
+        return word
+    return f"--{name.replace('_', '-')}{equals}{value}"
+
+
+def _add(group: argparse._ArgumentGroup, table: dict[str, tuple[Any, str]]) -> None:
+    for name, (kind, text) in table.items():
+        group.add_argument(
+            f"--{name.replace('_', '-')}",
+            dest=name,
+            type=kind,
+            default=argparse.SUPPRESS,
+            metavar="X" if kind is not str else "NAME",
+            help=text,
+        )

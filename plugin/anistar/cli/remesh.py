@@ -1,0 +1,55 @@
+"""``anistar remesh``."""
+
+from __future__ import annotations
+
+import argparse
+
+from ..errors import FormatError
+from ..formats import read, read_metric, write
+from ..remesh import remesh
+from ..transfer import transfer
+from . import console
+from .files import companion, writable
+from .options import adapt_options, add_remesh_options
+
+SUMMARY = "remesh to a given metric, and carry the fields over"
+EXAMPLE = "anistar remesh in.mesh --metric metric.sol -o out.mesh"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("input", help="mesh, with fields or without")
+    parser.add_argument("-o", "--output", required=True, help="new mesh")
+    parser.add_argument(
+        "--metric",
+        metavar="FILE",
+        help="tensors, or sizes, at the points; for in.mesh the default is in.sol",
+    )
+    parser.add_argument("--geometry", metavar="FILE", help="mesh whose boundary is the geometry")
+    add_remesh_options(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command."""
+    output = writable(arguments.output)
+    options = adapt_options(arguments)
+    source = arguments.metric or companion(arguments.input)
+    if source is None:
+        raise FormatError(f"no metric: give --metric, there is no .sol beside {arguments.input}")
+    mesh, fields = read(arguments.input)
+    M = read_metric(source, mesh)
+    geometry = read(arguments.geometry)[0] if arguments.geometry else None
+    done = remesh(mesh, M, options.remesh, geometry=geometry)
+    # The solution beside a medit mesh is the metric itself, not a field to carry.
+    carried = fields if arguments.metric else {}
+    write(output, done.mesh, transfer(mesh, carried, done.mesh, options.transfer).fields)
+    if arguments.json:
+        console.show_json(done.report)
+    else:
+        columns = ["mesh", "points", "cells"]
+        rows = [
+            [arguments.input, mesh.n_points, mesh.n_cells],
+            [arguments.output, done.mesh.n_points, done.mesh.n_cells],
+        ]
+        console.show_table("remeshed", columns, rows)
+    return 0

@@ -1,0 +1,64 @@
+"""``anistar study``."""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from typing import Any
+
+from ..expression import function_of_position
+from ..file_solver import FileSolver
+from ..formats import read
+from ..loop import Solve
+from ..mesh import Mesh
+from ..study import convergence_study
+from . import console
+from .options import adapt_options, add_metric_options, add_remesh_options, numbers
+
+SUMMARY = "measure how the error falls on adapted meshes"
+EXAMPLE = 'anistar study in.vtu --exact "tanh(20 * (x + y - 1))" --complexities 500,1000,2000'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("input", help="first mesh")
+    parser.add_argument("--exact", required=True, metavar="EXPR", help="exact solution in x, y, z")
+    parser.add_argument("--complexities", type=numbers, required=True, metavar="C,C,...")
+    parser.add_argument("--repeats", type=int, default=2, help="adaptations at each complexity")
+    parser.add_argument(
+        "--command",
+        dest="solver",
+        help="solver that reads {mesh} and writes {solution}; without it the exact solution is "
+        "interpolated",
+    )
+    add_metric_options(parser)
+    add_remesh_options(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command."""
+    exact = function_of_position(arguments.exact)
+    mesh, _ = read(arguments.input)
+
+    def interpolated(mesh: Mesh, fields: dict[str, Any]) -> dict[str, Any]:
+        return {"u": exact(mesh.points)}
+
+    with tempfile.TemporaryDirectory() as folder:
+        solve: Solve = interpolated
+        if arguments.solver:
+            solve = FileSolver(arguments.solver, folder)
+        study = convergence_study(
+            solve,
+            mesh,
+            arguments.complexities,
+            exact=exact,
+            repeats=arguments.repeats,
+            options=adapt_options(arguments),
+        )
+    if arguments.json:
+        console.show_json(study)
+        return 0
+    rows = [[r.complexity, r.points, r.cells, r.error, r.order] for r in study.table]
+    columns = ["complexity", "points", "cells", "L2 error", "order"]
+    console.show_table(f"order {study.order:.2f}", columns, rows)
+    return 0

@@ -1,0 +1,233 @@
+"""The demo: adapt a channel flow's temperature, and compare with uniform meshes."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import pictures
+from .adapt import AdaptOptions, adapt
+from .demo_problem import EPSILON, channel, solve
+from .interpolation_error import l2_norm
+from .loop import Loop, LoopOptions, Step, adapt_loop
+from .mesh import Mesh
+from .metric import MetricOptions
+from .remesh import RemeshOptions, remesh
+from .report import as_builtin, fields_of, write_json
+from .series import write_series
+from .study import observed_order
+from .topology import cell_volumes
+from .transfer import transfer
+
+Floats = NDArray[np.float64]
+Progress = Callable[[str], object]
+
+COMPLEXITIES = (500.0, 1000.0, 2000.0, 4000.0, 8000.0)
+
+# Adaptations at each complexity: the first still sees the layers of the coarser mesh.
+REPEATS = 2
+
+# The reference is solved at this multiple of the largest complexity.
+REFERENCE = 5.0
+
+# No layer of this problem is thinner; keeps the jumps in the boundary values from taking it all.
+SMALLEST_SIZE = EPSILON / 10
+
+# Keeps the obstacle round where the temperature would let it be coarse.
+CURVES = RemeshOptions(hausdorff_number=0.02)
+
+# Around the obstacle and the front of its wake.
+CLOSE_UP = (0.85, 1.65, 0.42, 0.82)
+
+
+@dataclass(frozen=True, slots=True)
+class DemoRow:
+    """The errors at one complexity.
+
+    Attributes
+    ----------
+    complexity : float
+        Target complexity of both meshes.
+    adapted_points, uniform_points : int
+        Unknowns on the adapted and the uniform mesh.
+    adapted_error, uniform_error : float
+        L2 norm of the difference from the reference solution.
+    """
+
+    complexity: float
+    adapted_points: int
+    adapted_error: float
+    uniform_points: int
+    uniform_error: float
+
+    @property
+    def gain(self) -> float:
+        """How many times smaller the error is on the adapted mesh."""
+        return self.uniform_error / self.adapted_error
+
+
+@dataclass(frozen=True, eq=False)
+class Demo:
+    """What the demo did.
+
+    Attributes
+    ----------
+    rows : tuple of DemoRow
+        One for each complexity.
+    adapted_order, uniform_order : float
+        Least-squares slope of ``-log(error)`` against ``log(points) / 2``.
+    reference_points : int
+        Unknowns of the reference.
+    loop : Loop
+        The steps of the loop.
+    files : tuple of Path
+        What was written.
+    seconds : float
+        Wall time.
+    """
+
+    rows: tuple[DemoRow, ...]
+    adapted_order: float
+    uniform_order: float
+    reference_points: int
+    loop: Loop
+    files: tuple[Path, ...]
+    seconds: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins only; the keys are those of the attributes."""
+        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+
+
+def stages(complexities: Sequence[float] = COMPLEXITIES) -> int:
+    """Return how often the demo calls `progress`."""
+    return 1 + REPEATS * len(complexities) + 1 + len(complexities) + 1
+
+
+def run_demo(
+    folder: str | os.PathLike[str],
+    *,
+    complexities: Sequence[float] = COMPLEXITIES,
+    progress: Progress = lambda stage: None,
+) -> Demo:
+    """Run the demo and leave meshes, fields, pictures and the report in a folder.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it is not there.
+    complexities : sequence of float
+        Growing target complexities, at least two.
+    progress : callable
+        ``progress(what)`` is called after each stage.
+
+    Returns
+    -------
+    Demo
+    """
+    started = time.perf_counter()
+    place = Path(folder)
+    place.mkdir(parents=True, exist_ok=True)
+    coarse = channel()
+    options = AdaptOptions(metric=MetricOptions(h_min=SMALLEST_SIZE), remesh=CURVES)
+    loop = adapt_loop(
+        solve,
+        coarse,
+        LoopOptions(
+            adapt=options,
+            complexities=tuple(c for c in complexities for _ in range(REPEATS)),
+            max_iterations=REPEATS * len(complexities),
+        ),
+        callback=lambda step: progress(f"adapted to {step.complexity or 0:g}") and None,
+    )
+    steps = loop.steps[REPEATS::REPEATS]
+    reference = _reference(loop.steps[-1], coarse, REFERENCE * max(complexities))
+    progress("reference solution")
+    rows = []
+    for step in steps:
+        rows.append(_row(step, coarse, reference))
+        progress(f"uniform at {step.complexity:g}")
+    files = _written(place, loop, steps, rows)
+    progress("files and pictures")
+    demo = Demo(
+        rows=tuple(rows),
+        adapted_order=observed_order(*_columns(rows, "adapted")),
+        uniform_order=observed_order(*_columns(rows, "uniform")),
+        reference_points=reference[0].n_points,
+        loop=loop,
+        files=(*files, place / "report.json"),
+        seconds=time.perf_counter() - started,
+    )
+    write_json(place / "report.json", demo)
+    return demo
+
+
+def _reference(step: Step, coarse: Mesh, complexity: float) -> tuple[Mesh, Floats]:
+    options = AdaptOptions(
+        metric=MetricOptions(target_complexity=complexity, h_min=SMALLEST_SIZE / 2), remesh=CURVES
+    )
+    mesh = adapt(step.mesh, step.fields, options, geometry=coarse).mesh
+    return mesh, solve(mesh, {})["u"]
+
+
+def _row(step: Step, coarse: Mesh, reference: tuple[Mesh, Floats]) -> DemoRow:
+    area = float(cell_volumes(coarse.points, coarse.cells).sum())
+    complexity = float(step.complexity or 0.0)
+    M = np.tile(complexity / area * np.eye(2), (coarse.n_points, 1, 1))
+    uniform = remesh(coarse, M, CURVES, geometry=coarse).mesh
+    return DemoRow(
+        complexity=complexity,
+        adapted_points=step.mesh.n_points,
+        adapted_error=_distance(step.mesh, step.fields["u"], reference),
+        uniform_points=uniform.n_points,
+        uniform_error=_distance(uniform, solve(uniform, {})["u"], reference),
+    )
+
+
+def _distance(mesh: Mesh, u: Floats, reference: tuple[Mesh, Floats]) -> float:
+    fine, exact = reference
+    carried = transfer(mesh, {"u": u}, fine, outside="nearest").fields["u"]
+    return l2_norm(fine, carried - exact)
+
+
+def _columns(rows: Sequence[DemoRow], kind: str) -> tuple[list[int], list[float], int]:
+    counts = [getattr(row, f"{kind}_points") for row in rows]
+    return counts, [getattr(row, f"{kind}_error") for row in rows], 2
+
+
+def _written(place: Path, loop: Loop, steps: Sequence[Step], rows: Sequence[DemoRow]) -> list[Path]:
+    first, last = loop.steps[0], steps[-1]
+    middle = steps[min(1, len(steps) - 1)]
+    shown = [first, *steps]
+    files = write_series(place / "channel.pvd", ((step.mesh, step.fields) for step in shown))
+    pictures.overview_picture(
+        place / "overview.png", last.mesh, last.fields["u"], _metric_of(middle), label="temperature"
+    )
+    pictures.mesh_picture(place / "mesh_first.png", first.mesh)
+    pictures.mesh_picture(place / "mesh_last.png", last.mesh)
+    pictures.mesh_picture(place / "mesh_last_close_up.png", last.mesh, box=CLOSE_UP)
+    pictures.solution_picture(
+        place / "solution.png", last.mesh, last.fields["u"], label="temperature"
+    )
+    pictures.metric_picture(place / "metric.png", *_metric_of(middle))
+    curves = {
+        f"{kind} mesh": list(zip(*_columns(rows, kind)[:2], strict=True))
+        for kind in ("uniform", "adapted")
+    }
+    pictures.convergence_picture(
+        place / "convergence.png", curves, order=1.0, label="$L^2$ error against the reference"
+    )
+    return [*files, *sorted(place.glob("*.png"))]
+
+
+def _metric_of(step: Step) -> tuple[Mesh, Floats]:
+    if step.metric is None:
+        raise ValueError("the first step of a loop has no metric")
+    return step.mesh, step.metric

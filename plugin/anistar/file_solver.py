@@ -1,0 +1,93 @@
+"""A solver that is a command: meshes and solutions go through files."""
+
+from __future__ import annotations
+
+import shlex
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .errors import FormatError
+from .fields import Field
+from .formats import read, write
+from .mesh import Mesh
+
+#: Suffix of the mesh file, and that of the solution file.
+FILE_KINDS = {"mesh": (".mesh", ".sol"), "meshb": (".meshb", ".solb"), "vtu": (".vtu", ".vtu")}
+
+
+class FileSolver:
+    """Runs a command for each solve; an instance is the `solve` of `adapt_loop`.
+
+    Parameters
+    ----------
+    command : str
+        The command with ``{mesh}`` and ``{solution}`` where the paths go. It reads the first and
+        writes the second; it runs without a shell.
+    folder : path
+        Where the files are left: ``step_000.mesh`` and so on.
+    kind : {"mesh", "meshb", "vtu"}
+        With `vtu` the mesh file also carries the last fields, as an initial guess.
+
+    Raises
+    ------
+    ValueError
+        If the command lacks a place for a path, or the kind is unknown.
+    """
+
+    def __init__(self, command: str, folder: str | Path, kind: str = "mesh") -> None:
+        for place in ("{mesh}", "{solution}"):
+            if place not in command:
+                raise ValueError(f"the solver command must contain {place}: {command!r}")
+        if kind not in FILE_KINDS:
+            raise ValueError(f"file kind must be one of {', '.join(FILE_KINDS)}, not {kind!r}")
+        self.command = shlex.split(command)
+        self.folder = Path(folder)
+        self.kind = kind
+        self.count = 0
+
+    def __call__(self, mesh: Mesh, fields: Mapping[str, Any]) -> dict[str, Field]:
+        """Write the mesh, run the command, and return the fields it wrote.
+
+        Raises
+        ------
+        RuntimeError
+            If the command fails or writes no solution.
+        FormatError
+            If its solution cannot be read or does not fit the mesh.
+        """
+        mesh_file, solution_file = self._paths()
+        solution_file.unlink(missing_ok=True)
+        write(mesh_file, mesh, fields if self.kind == "vtu" else None)
+        self._run(mesh_file, solution_file)
+        if not solution_file.is_file():
+            raise RuntimeError(f"the solver wrote no {solution_file}")
+        # A medit solution has no mesh: it is read with the mesh of the same name.
+        solved, found = read(solution_file if self.kind == "vtu" else mesh_file)
+        if solved.n_points != mesh.n_points or solved.n_cells != mesh.n_cells:
+            raise FormatError(
+                f"{solution_file} has {solved.n_points} points and {solved.n_cells} cells, the "
+                f"mesh has {mesh.n_points} and {mesh.n_cells}"
+            )
+        self.count += 1
+        return found
+
+    def _paths(self) -> tuple[Path, Path]:
+        mesh_suffix, solution_suffix = FILE_KINDS[self.kind]
+        stem = f"step_{self.count:03d}"
+        solution = f"{stem}_solution" if mesh_suffix == solution_suffix else stem
+        return self.folder / (stem + mesh_suffix), self.folder / (solution + solution_suffix)
+
+    def _run(self, mesh_file: Path, solution_file: Path) -> None:
+        places = {"{mesh}": str(mesh_file), "{solution}": str(solution_file)}
+        words = self.command
+        for place, path in places.items():
+            words = [word.replace(place, path) for word in words]
+        try:
+            done = subprocess.run(words, capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise RuntimeError(f"cannot run the solver {words[0]!r}: {error.strerror}") from error
+        if done.returncode != 0:
+            said = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()
+            raise RuntimeError(f"the solver ended with code {done.returncode}: {said[-1]}")

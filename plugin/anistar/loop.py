@@ -1,0 +1,298 @@
+"""The solve-adapt loop."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .adapt import AdaptOptions, AdaptReport, Floats, Projection, adapt, metric_field_names
+from .errors import MeshingError
+from .fields import Field, as_fields
+from .interpolation_error import interpolation_error
+from .mesh import Mesh
+from .report import as_builtin
+
+Fields = Mapping[str, Field | ArrayLike]
+Solve = Callable[[Mesh, dict[str, Any]], Fields]
+Quantity = Callable[[Mesh, dict[str, Any]], float]
+
+# Where the complexity starts and what it is multiplied by, while a target error or a quantity of
+# interest decides.
+START = 1000.0
+GROWTH = 2.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopOptions:
+    """When to adapt, to what, and when to stop.
+
+    At least one of `complexities`, `target_error` and `qoi` with `rtol` must be given. Without
+    `complexities` the loop starts at the target of ``adapt.metric``, or 1000, and doubles it.
+
+    Parameters
+    ----------
+    adapt : AdaptOptions
+        Options of each adaptation; the target complexity is replaced in each.
+    complexities : sequence of float, optional
+        Target complexity of each adaptation; repeat one to iterate at a fixed complexity.
+    target_error : float, optional
+        Stop when the estimated L2 norm of the P1 interpolation error of every metric field is
+        at most this.
+    qoi : callable, optional
+        ``qoi(mesh, fields)`` returns the quantity of interest, recorded in each step.
+    rtol : float, optional
+        Stop when two successive quantities differ by at most ``rtol`` times the last.
+    max_iterations : int
+        Largest number of adaptations.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of its bounds, or nothing says when to stop.
+    """
+
+    adapt: AdaptOptions = field(default_factory=AdaptOptions)
+    complexities: tuple[float, ...] | None = None
+    target_error: float | None = None
+    qoi: Quantity | None = None
+    rtol: float | None = None
+    max_iterations: int = 20
+
+    def __post_init__(self) -> None:
+        if self.complexities is not None:
+            values = tuple(float(value) for value in self.complexities)
+            for index, value in enumerate(values):
+                if not (value > 0 and math.isfinite(value)):
+                    raise ValueError(f"complexities[{index}] must be above 0, not {value}")
+            object.__setattr__(self, "complexities", values)
+        for name in ("target_error", "rtol"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise ValueError(f"{name} must be above 0, not {value}")
+        if self.max_iterations < 1:
+            raise ValueError(f"max_iterations must be at least 1, not {self.max_iterations}")
+        if self.rtol is not None and self.qoi is None:
+            raise ValueError(f"rtol = {self.rtol} needs a qoi")
+        if not self.complexities and self.target_error is None and self.rtol is None:
+            raise ValueError("give complexities, target_error, or qoi with rtol")
+
+    def complexity_after(self, iteration: int, dim: int) -> float | None:
+        """Return the target complexity after a solve, None when there is none left."""
+        if iteration >= self.max_iterations:
+            return None
+        if self.complexities:
+            return self.complexities[iteration] if iteration < len(self.complexities) else None
+        metric = self.adapt.metric
+        is_set = metric.target_complexity is not None or metric.target_elements is not None
+        return (metric.complexity_for(dim) if is_set else START) * GROWTH**iteration
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One solve, on the mesh that the adaptation before it made.
+
+    Attributes
+    ----------
+    iteration : int
+        0 on the first mesh.
+    complexity : float or None
+        Target complexity of the mesh; None for the first.
+    mesh : Mesh
+        The mesh of the solve.
+    fields : dict
+        What `solve` returned.
+    metric : (n, d, d) float64 or None
+        The metric that the mesh was made for, at its points; None for the first.
+    report : AdaptReport or None
+        How the mesh was made; None for the first.
+    qoi : float or None
+        The quantity of interest.
+    error : dict of str to float
+        Estimated L2 norm of the P1 interpolation error of each metric field.
+    seconds : float
+        Wall time of the solve.
+    """
+
+    iteration: int
+    complexity: float | None
+    mesh: Mesh
+    fields: dict[str, Any]
+    metric: Floats | None
+    report: AdaptReport | None
+    qoi: float | None
+    error: dict[str, float]
+    seconds: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins only: numbers and reports, not the arrays."""
+        names = ("iteration", "complexity", "qoi", "error", "seconds", "report")
+        counts = {"points": self.mesh.n_points, "cells": self.mesh.n_cells}
+        return {**counts, **{name: as_builtin(getattr(self, name)) for name in names}}
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """The steps of a loop and why it stopped."""
+
+    steps: tuple[Step, ...]
+    stop_reason: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins only: `stop_reason` and `steps`."""
+        return {
+            "stop_reason": self.stop_reason,
+            "steps": [step.as_dict() for step in self.steps],
+        }
+
+
+class LoopError(MeshingError):
+    """A loop ended early; `loop` holds the steps that were finished.
+
+    Attributes
+    ----------
+    loop : Loop
+        The finished steps.
+    """
+
+    def __init__(self, message: str, loop: Loop, report: Any = None) -> None:
+        super().__init__(message, report)
+        self.loop = loop
+
+
+class _State(NamedTuple):
+    """The mesh and fields to solve on next, and where they come from."""
+
+    iteration: int
+    complexity: float | None
+    mesh: Mesh
+    fields: dict[str, Any]
+    metric: Floats | None
+    report: AdaptReport | None
+
+
+def adapt_loop(
+    solve: Solve,
+    mesh: Mesh,
+    options: LoopOptions,
+    *,
+    geometry: Mesh | None = None,
+    project: Projection | None = None,
+    callback: Callable[[Step], object] | None = None,
+) -> Loop:
+    """Solve and adapt until the options say stop.
+
+    Parameters
+    ----------
+    solve : callable
+        ``solve(mesh, fields)`` returns the new fields; it gets ``{}`` on the first call, then
+        its last fields on the new mesh.
+    mesh : Mesh
+        The first mesh. Its boundary is the geometry of every mesh.
+    options : LoopOptions
+        What to adapt to and when to stop.
+    geometry : Mesh, optional
+        Another mesh whose boundary is the geometry.
+    project : callable, optional
+        ``project(points, facet_tag)`` moves (k, d) boundary points onto the true boundary.
+    callback : callable, optional
+        ``callback(step)`` is called after each solve; the loop stops when it returns True.
+
+    Returns
+    -------
+    Loop
+
+    Raises
+    ------
+    LoopError
+        If `solve` raises or returns what no metric can be made of, or the mesher fails. The
+        message names the iteration; the exception carries the finished steps.
+    """
+    geometry = geometry if geometry is not None else mesh
+    steps: list[Step] = []
+    state = _State(0, None, mesh, {}, None, None)
+    try:
+        while True:
+            steps.append(_solved(solve, state, options))
+            if reason := _reason_to_stop(steps, options, callback):
+                return Loop(tuple(steps), reason)
+            state = _adapted(steps[-1], options, geometry, project)
+    except Exception as error:
+        message = f"iteration {len(steps)}: {error}"
+        done = Loop(tuple(steps), message)
+        raise LoopError(message, done, getattr(error, "report", None)) from error
+
+
+def _solved(solve: Solve, state: _State, options: LoopOptions) -> Step:
+    started = time.perf_counter()
+    fields = solve(state.mesh, dict(state.fields))
+    seconds = time.perf_counter() - started
+    if not isinstance(fields, Mapping):
+        raise TypeError(f"solve must return a dict of fields, not {type(fields).__name__}")
+    checked = as_fields(state.mesh, fields)
+    _refuse_nan(state.mesh, checked)
+    qoi = None if options.qoi is None else float(options.qoi(state.mesh, dict(fields)))
+    names = metric_field_names(checked, options.adapt.metric_fields)
+    error = {name: _estimated(state.mesh, checked[name].values) for name in names}
+    return Step(*state[:3], dict(fields), state.metric, state.report, qoi, error, seconds)
+
+
+def _adapted(
+    step: Step, options: LoopOptions, geometry: Mesh, project: Projection | None
+) -> _State:
+    complexity = options.complexity_after(step.iteration, step.mesh.dim)
+    metric = dataclasses.replace(
+        options.adapt.metric, target_complexity=complexity, target_elements=None
+    )
+    stages = dataclasses.replace(options.adapt, metric=metric)
+    done = adapt(step.mesh, step.fields, stages, geometry=geometry, project=project)
+    return _State(step.iteration + 1, complexity, done.mesh, done.fields, done.metric, done.report)
+
+
+def _reason_to_stop(
+    steps: list[Step],
+    options: LoopOptions,
+    callback: Callable[[Step], object] | None,
+) -> str | None:
+    step = steps[-1]
+    if callback is not None and callback(step) is True:
+        return "stopped by the callback"
+    if options.target_error is not None and max(step.error.values()) <= options.target_error:
+        return f"target error {options.target_error:g} reached"
+    if options.rtol is not None and len(steps) > 1:
+        before, now = steps[-2].qoi, step.qoi
+        if before is not None and now is not None and abs(now - before) <= options.rtol * abs(now):
+            return f"quantity of interest within rtol {options.rtol:g}"
+    if options.complexity_after(step.iteration, step.mesh.dim) is None:
+        done = step.iteration == len(options.complexities or ())
+        return "complexities done" if done else f"max_iterations {options.max_iterations} reached"
+    return None
+
+
+def _estimated(mesh: Mesh, values: Floats) -> float:
+    columns = values.reshape(len(values), -1).T
+    return math.hypot(*(interpolation_error(mesh, column) for column in columns))
+
+
+def _refuse_nan(mesh: Mesh, fields: Mapping[str, Field]) -> None:
+    for name, field_ in fields.items():
+        rows = np.asarray(field_.values, dtype=np.float64).reshape(len(field_.values), -1)
+        bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+        if len(bad) == 0:
+            continue
+        first = int(bad[0])
+        if field_.on == "points":
+            what, x = "point", mesh.points[first]
+        else:
+            what, x = "cell", mesh.points[mesh.cells[first]].mean(axis=0)
+        value = rows[first][~np.isfinite(rows[first])][0]
+        where = ", ".join(f"{c:.6g}" for c in x)
+        raise ValueError(
+            f"solve returned {value} in field {name!r} at {what} {first} ({where}); {len(bad)} such"
+        )

@@ -1,0 +1,52 @@
+"""Poisson's equation on the unit square with a known circular layer: error against unknowns.
+
+``-Laplace(u) = f`` with u = tanh(20 (x^2 + y^2 - 1/2)) given on the boundary.
+"""
+
+import numpy as np
+from skfem import Basis, BilinearForm, ElementTriP1, LinearForm, MeshTri, condense, solve
+
+import anistar
+from anistar.adapters.skfem import from_skfem, to_skfem
+
+STEEPNESS = 20.0
+
+
+def exact(x):
+    """Return the solution at (..., 2) points."""
+    return np.tanh(STEEPNESS * ((x**2).sum(axis=-1) - 0.5))
+
+
+@BilinearForm
+def laplace(u, v, w):
+    """Integrate the left-hand side."""
+    return u.grad[0] * v.grad[0] + u.grad[1] * v.grad[1]
+
+
+@LinearForm
+def load(v, w):
+    """Integrate the right-hand side, -Laplace(exact)."""
+    x = np.moveaxis(np.asarray(w.x), 0, -1)
+    t, square = exact(x), (x**2).sum(axis=-1)
+    return (1 - t**2) * (8 * STEEPNESS**2 * square * t - 4 * STEEPNESS) * v
+
+
+def solve_poisson(mesh, fields):
+    """Solve on a mesh; the fields of the last mesh are not needed."""
+    basis = Basis(to_skfem(mesh), ElementTriP1(), intorder=6)
+    A, b = laplace.assemble(basis), load.assemble(basis)
+    return {"u": solve(*condense(A, b, x=exact(mesh.points), D=basis.get_dofs().all()))}
+
+
+def main(complexities=(250, 500, 1000, 2000, 4000)):
+    """Print the error against the unknowns, and the observed order."""
+    first = from_skfem(MeshTri().refined(4))
+    study = anistar.convergence_study(solve_poisson, first, complexities, exact=exact)
+    for row in study.table:
+        print(f"{row.points:6d} unknowns, L2 error {row.error:.3e}")
+    print(f"observed order {study.order:.2f}")
+    return study
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,172 @@
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+from meshes import annulus, slit, square, two_regions
+
+from anistar.adapt import AdaptOptions, adapt
+from anistar.fields import Field
+from anistar.interpolation_error import l2_error
+from anistar.metric import MetricOptions, from_fields
+from anistar.remesh import RemeshOptions, remesh
+from anistar.transfer import TransferOptions
+from anistar.validation import validate
+
+
+def layer(points):
+    """A circular tanh layer: curved, so that the best mesh cannot stretch without bound."""
+    return np.tanh(20 * ((points**2).sum(axis=-1) - 0.5))
+
+
+def options(complexity=300.0, **metric):
+    return AdaptOptions(metric=MetricOptions(target_complexity=complexity, **metric))
+
+
+@pytest.mark.parametrize("make", [square, two_regions, slit])
+def test_an_adapted_mesh_is_valid_and_keeps_every_tag_and_name(make):
+    mesh = make(10)
+    done = adapt(mesh, {"u": layer(mesh.points)}, options())
+    assert validate(done.mesh, mesh) == []
+    assert done.mesh.names == mesh.names
+    assert 250 < done.mesh.n_points < 500
+    assert done.metric.shape == (done.mesh.n_points, 2, 2)
+
+
+def test_ten_passes_on_a_curved_domain_do_not_drift_from_the_first_mesh():
+    geometry = annulus(6)
+    mesh, fields = geometry, {"u": layer(geometry.points)}
+    for _ in range(10):
+        done = adapt(mesh, fields, options(200), geometry=geometry)
+        mesh, fields = done.mesh, {"u": layer(done.mesh.points)}
+    assert validate(mesh, geometry, tolerance=0.02) == []
+    radius = np.linalg.norm(mesh.points[mesh.facets], axis=2)
+    assert np.minimum(np.abs(radius - 0.5), np.abs(radius - 1.0)).max() < 2e-3
+
+
+def test_fields_come_back_in_the_form_they_were_given():
+    mesh = square(8)
+    fields = {
+        "u": layer(mesh.points),
+        "region": Field(np.ones(mesh.n_cells, int), "cells"),
+        "v": Field(mesh.points.copy()),
+    }
+    done = adapt(mesh, fields, options())
+    assert isinstance(done.fields["u"], np.ndarray)
+    assert done.fields["region"].values.tolist() == [1] * done.mesh.n_cells
+    assert np.abs(done.fields["v"].values - done.mesh.points).max() < 1e-12
+
+
+def test_only_the_chosen_fields_make_the_metric():
+    mesh = square(10)
+    fields = {"u": layer(mesh.points), "w": layer(1 - mesh.points)}
+    chosen = dataclasses.replace(options(), metric_fields=["u"])
+    done = adapt(mesh, fields, chosen)
+    alone, _ = from_fields(mesh, {"u": fields["u"]}, chosen.metric)
+    expected = remesh(mesh, alone).mesh
+    assert done.report.metric_fields == ("u",)
+    assert np.array_equal(done.mesh.points, expected.points)
+
+
+def test_the_same_input_gives_the_same_bytes():
+    mesh = square(8)
+    first, second = (adapt(mesh, {"u": layer(mesh.points)}, options()) for _ in range(2))
+    assert first.mesh.points.tobytes() == second.mesh.points.tobytes()
+    assert first.mesh.cells.tobytes() == second.mesh.cells.tobytes()
+
+
+def test_the_report_is_json():
+    mesh = square(6)
+    report = adapt(mesh, {"u": layer(mesh.points)}, options(100)).report
+    again = json.loads(json.dumps(report.as_dict(), allow_nan=False))
+    assert again["metric"]["target_complexity"] == 100
+    assert again["remesh"]["converged"] is True
+    assert "u" in again["transfer"]["changes"]
+
+
+def test_the_interpolation_error_of_a_tanh_layer_falls_like_the_complexity():
+    # C^-1 is the optimum for P1 elements in L2.
+    complexities, errors = (1000, 3000, 9000), []
+    mesh = square(20)
+    for complexity in complexities:
+        for _ in range(3):
+            M, _ = from_fields(
+                mesh, {"u": layer(mesh.points)}, MetricOptions(target_complexity=complexity)
+            )
+            mesh = remesh(mesh, M, geometry=square(20)).mesh
+        assert validate(mesh) == []
+        errors.append(l2_error(mesh, layer(mesh.points), layer))
+    rate = -np.polyfit(np.log(complexities), np.log(errors), 1)[0]
+    assert rate == pytest.approx(1.0, abs=0.06)
+
+
+class TestBadInput:
+    mesh = square(4)
+
+    def test_an_unknown_field_is_named_with_the_fields_there_are(self):
+        wanted = dataclasses.replace(options(), metric_fields=["w"])
+        with pytest.raises(ValueError, match=r"unknown field 'w'; the fields are: u \(scalar, po"):
+            adapt(self.mesh, {"u": layer(self.mesh.points)}, wanted)
+
+    def test_a_label_cannot_make_a_metric(self):
+        wanted = dataclasses.replace(options(), metric_fields=["k"])
+        with pytest.raises(ValueError, match="field 'k' is a label on points: a metric needs"):
+            adapt(self.mesh, {"k": np.arange(25)}, wanted)
+
+    def test_no_usable_field_is_said(self):
+        with pytest.raises(ValueError, match="no scalar or vector field at the points"):
+            adapt(self.mesh, {}, options())
+
+    def test_nan_is_named_with_field_and_point(self):
+        u = layer(self.mesh.points)
+        u[17] = np.nan
+        with pytest.raises(ValueError, match=r"field 'u' at point 17 is not finite: nan"):
+            adapt(self.mesh, {"u": u}, options())
+
+    def test_metric_fields_given_as_a_string_is_refused(self):
+        with pytest.raises(TypeError, match="metric_fields must be a sequence of names, not 'u'"):
+            AdaptOptions(metric_fields="u")
+
+    def test_empty_metric_fields_are_refused(self):
+        with pytest.raises(ValueError, match="metric_fields is empty"):
+            AdaptOptions(metric_fields=[])
+
+
+class TestOptionsFromPlainNames:
+    def test_petsc_names_nested_and_flat(self):
+        nested = AdaptOptions.from_dict({"dm_plex_metric": {"h_min": 1e-3, "a_max": 0}})
+        flat = AdaptOptions.from_dict({"dm_plex_metric_h_min": 1e-3, "dm_plex_metric_a_max": 0})
+        assert nested == flat == AdaptOptions(metric=MetricOptions(h_min=1e-3))
+
+    def test_mmg_names(self):
+        made = AdaptOptions.from_dict({"hmin": 0.1, "hmax": 1.0, "hgrad": -1, "hausd": 0.05})
+        assert made.metric == MetricOptions(h_min=0.1, h_max=1.0, gradation_factor=None)
+        assert made.remesh == RemeshOptions(hausdorff_number=0.05)
+
+    def test_stages_as_mappings(self):
+        made = AdaptOptions.from_dict(
+            {"metric": {"p": 1.0}, "remesh": {"max_vertices": 50}, "transfer": {"outside": "nan"}}
+        )
+        assert made.metric == MetricOptions(p=1.0)
+        assert made.remesh == RemeshOptions(max_vertices=50)
+        assert made.transfer == TransferOptions(outside="nan")
+
+    def test_none_given_is_the_default(self):
+        assert AdaptOptions.from_dict({}) == AdaptOptions()
+
+    @pytest.mark.parametrize(
+        ("given", "message"),
+        [
+            ({"h_mim": 1.0}, "unknown option 'h_mim': did you mean 'h_min'"),
+            ({"zzz": 1.0}, "unknown option 'zzz': options: a_max,"),
+            ({"hmin": 1.0, "h_min": 2.0}, "option 'h_min' is given twice"),
+            ({"h_min": -1.0}, "h_min"),
+        ],
+    )
+    def test_a_bad_option_is_named(self, given, message):
+        with pytest.raises(ValueError, match=message):
+            AdaptOptions.from_dict(given)
+
+    def test_a_group_that_is_no_mapping_is_named(self):
+        with pytest.raises(TypeError, match="option group 'metric' must be a mapping, not 3"):
+            AdaptOptions.from_dict({"metric": 3})

@@ -1,0 +1,137 @@
+import sys
+
+import numpy as np
+import pytest
+from meshes import square
+
+from anistar.cli import main
+from anistar.formats import read, write, write_metric
+
+
+def run(words, *more):
+    return main([*words.split(), *more])
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mesh = square(4)
+    write("in.vtu", mesh, {"u": mesh.points[:, 0] ** 2})
+    write("bare.vtu", mesh)
+    (tmp_path / "broken.vtu").write_text("<VTKFile> no more")
+    (tmp_path / "cut.mesh").write_text("MeshVersionFormatted 2\nDimension 2\nVertices 9\n0 0 0\n")
+    nan = mesh.points[:, 0] ** 2
+    nan[5] = np.nan
+    write("nan.vtu", mesh, {"u": nan})
+    M = np.tile(100.0 * np.eye(2), (mesh.n_points, 1, 1))
+    M[17] = [[1.0, 2.0], [2.0, 1.0]]
+    write_metric("indefinite.sol", mesh, M)
+    (tmp_path / "folder.vtu").mkdir()
+    return tmp_path
+
+
+CASES = {
+    "no command": ("", "required: COMMAND"),
+    "unknown command": ("adopt", "invalid choice: 'adopt'"),
+    "no output": ("adapt in.vtu", "required: -o/--output"),
+    "unknown option": ("adapt in.vtu -o o.vtu --colour red", "unrecognized arguments: --colour"),
+    "not a number": ("adapt in.vtu -o o.vtu --h-min tiny", "argument --h-min"),
+    "not off": ("adapt in.vtu -o o.vtu --a-max some", "argument --a-max: invalid number or 'off'"),
+    "out of bounds": ("adapt in.vtu -o o.vtu --target-complexity -3", "target_complexity"),
+    "no target": ("adapt in.vtu -o o.vtu", "target_complexity or target_elements"),
+    "no such file": ("adapt gone.vtu -o o.vtu --target-complexity 9", "gone.vtu: no such file"),
+    "unreadable file": ("adapt broken.vtu -o o.vtu --target-complexity 9", "broken.vtu"),
+    "truncated file": ("convert cut.mesh o.vtu", "cut.mesh"),
+    "unknown field": (
+        "adapt in.vtu --field v --target-complexity 9 -o o.vtu",
+        "unknown field 'v'; the fields are: u (scalar, points)",
+    ),
+    "no field": (
+        "adapt bare.vtu --target-complexity 9 -o o.vtu",
+        "no scalar or vector field at the points",
+    ),
+    "nan in a field": (
+        "adapt nan.vtu --target-complexity 9 -o o.vtu",
+        "field 'u' at point 5 is not finite: nan",
+    ),
+    "indefinite metric": (
+        "remesh in.vtu --metric indefinite.sol -o o.vtu",
+        "metric at point 17 is not positive definite: smallest eigenvalue -1",
+    ),
+    "no metric": ("remesh in.vtu -o o.vtu", "give --metric, there is no .sol beside in.vtu"),
+    "output in no folder": ("convert in.vtu no/o.vtu", "cannot write no/o.vtu: no such folder no"),
+    "output is a folder": ("convert in.vtu folder.vtu", "cannot write folder.vtu: it is a folder"),
+    "output without suffix": ("convert in.vtu o", "cannot write o: the suffix"),
+    "unknown method": (
+        "transfer in.vtu bare.vtu --method magic -o o.vtu",
+        "transfer method 'magic' does not exist; methods: interpolate",
+    ),
+    "no stop rule": ("loop in.vtu --command {mesh}{solution} -o run", "give complexities"),
+    "no place for the solution": (
+        "loop in.vtu --command solve{mesh} --complexities 9 -o run",
+        "the solver command must contain {solution}",
+    ),
+    "not an expression": (
+        "study in.vtu --exact open('x') --complexities 9,18",
+        """"open('x')" is not allowed in an expression""",
+    ),
+    "not a formula": ("study in.vtu --exact x+ --complexities 9,18", "cannot understand 'x+'"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_bad_input_is_one_line_that_names_the_culprit(case, folder, capsys):
+    words, expected = CASES[case]
+    before = sorted(folder.iterdir())
+    assert run(words) == 2
+    said = capsys.readouterr().err
+    assert expected in said
+    assert "error: " in said
+    assert said.count("\n") == 1
+    assert sorted(path for path in folder.iterdir() if path.name != "run") == before
+
+
+def test_a_failing_solver_ends_with_1_and_its_last_words(folder, capsys):
+    (folder / "solver.py").write_text("import sys; sys.exit('matrix is singular')")
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    words = "loop in.vtu --complexities 50 -o run"
+    assert run(words, "--command", command) == 1
+    said = capsys.readouterr().err
+    assert "iteration 0: the solver ended with code 1: matrix is singular" in said
+
+
+def test_a_solver_that_writes_nothing_is_said(folder, capsys):
+    (folder / "solver.py").write_text("")
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    words = "loop in.vtu --complexities 50 -o run"
+    assert run(words, "--command", command) == 1
+    assert "the solver wrote no run/step_000.sol" in capsys.readouterr().err
+
+
+def test_a_solver_that_does_not_exist_is_said(folder, capsys):
+    words = "loop in.vtu --complexities 50 -o run"
+    assert run(words, "--command", "no-such-solver {mesh} {solution}") == 1
+    assert "cannot run the solver 'no-such-solver'" in capsys.readouterr().err
+
+
+def test_debug_shows_the_traceback(folder, capsys):
+    words = "adapt in.vtu --field v --target-complexity 9 -o o.vtu --debug"
+    assert run(words) == 2
+    said = capsys.readouterr().err
+    assert "Traceback" in said
+    assert "ValueError: unknown field 'v'" in said
+
+
+def test_a_crash_while_writing_leaves_the_old_file(folder, monkeypatch):
+    (folder / "o.vtu").write_text("old")
+
+    def broken(self, target):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("pathlib.Path.replace", broken)
+    assert run("convert in.vtu o.vtu") == 2
+    monkeypatch.undo()
+    assert (folder / "o.vtu").read_text() == "old"
+    assert not list(folder.glob("*.part*"))
+    assert not list(folder.glob(".*part*"))
+    assert read(folder / "in.vtu")[0].n_points == 25

@@ -1,0 +1,195 @@
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from meshes import square
+
+import anistar
+from anistar.cli import main
+from anistar.cli.main import COMMANDS
+from anistar.fields import Field
+from anistar.formats import read, read_metric, write, write_metric
+from anistar.metric import complexity
+from anistar.validation import validate
+
+SOLVER = """
+import sys
+import numpy as np
+from anistar.formats import read, write
+mesh, _ = read(sys.argv[1])
+u = np.tanh(20 * ((mesh.points**2).sum(axis=1) - 0.5))
+if sys.argv[2].endswith(".sol"):
+    write(sys.argv[2], mesh, {"u": u})
+else:
+    write(sys.argv[2], mesh, {"u": u, "twice": 2 * u})
+"""
+
+
+def run(words, *more):
+    return main([*words.split(), *more])
+
+
+def layer(points):
+    return np.tanh(20 * ((points**2).sum(axis=-1) - 0.5))
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with in.vtu and in.mesh + in.sol, which is the working folder."""
+    monkeypatch.chdir(tmp_path)
+    mesh = square(10)
+    fields = {"u": layer(mesh.points), "w": mesh.points[:, 0] ** 2}
+    write("in.vtu", mesh, {**fields, "region": Field(np.ones(mesh.n_cells, int), "cells")})
+    write("in.mesh", mesh, {"u": fields["u"]})
+    (tmp_path / "solver.py").write_text(SOLVER)
+    # The solver runs in another process, which must find the package that is tested here.
+    monkeypatch.setenv("PYTHONPATH", str(Path(anistar.__file__).parents[1]))
+    return tmp_path
+
+
+def report_of(capsys):
+    return json.loads(capsys.readouterr().out)
+
+
+def test_adapt_writes_a_valid_mesh_with_the_fields(folder, capsys):
+    assert run("adapt in.vtu --field u --target-complexity 300 -o out.vtu") == 0
+    mesh, fields = read("out.vtu")
+    assert validate(mesh, read("in.vtu")[0]) == []
+    assert {"u", "w", "region"} <= set(fields)
+    assert 250 < mesh.n_points < 500
+    assert "out.vtu" in capsys.readouterr().out
+
+
+def test_adapt_picks_up_the_medit_solution_beside_the_mesh(folder, capsys):
+    assert run("adapt in.mesh --target-complexity 300 -o out.mesh --json") == 0
+    report = report_of(capsys)
+    assert report["metric"]["target_complexity"] == 300
+    assert validate(read("out.mesh")[0]) == []
+    assert (folder / "out.sol").exists()
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        ["--h-min", "0.02", "--gradation-factor", "off"],
+        ["--h_min=0.02", "--gradation_factor", "-1"],
+        ["-hmin", "0.02", "-hgrad", "-1"],
+        ["--hmin", "0.02", "--hgrad", "off"],
+        ["-dm_plex_metric_h_min", "0.02", "-dm_plex_metric_gradation_factor", "-1"],
+    ],
+)
+def test_options_go_by_our_names_petsc_s_and_mmg_s(folder, flags):
+    words = "metric in.vtu --field u --target-complexity 300 -o m.sol"
+    assert run(words, *flags) == 0
+    M = read_metric("m.sol", read("in.vtu")[0])
+    assert np.linalg.eigvalsh(M).max() <= 0.02**-2 * (1 + 1e-9)
+
+
+def test_metric_reaches_the_complexity_and_prints_the_ledger(folder, capsys):
+    assert run("metric in.vtu --field u --target-complexity 300 -o m.sol") == 0
+    mesh = read("in.vtu")[0]
+    assert complexity(mesh, read_metric("m.sol", mesh)) == pytest.approx(300, rel=2e-3)
+    assert "graded" in capsys.readouterr().out
+
+
+def test_remesh_takes_a_metric_file_and_carries_the_fields(folder):
+    mesh = read("in.vtu")[0]
+    write_metric("m.sol", mesh, np.tile(100 * np.eye(2), (mesh.n_points, 1, 1)))
+    assert run("remesh in.vtu --metric m.sol -o out.vtu") == 0
+    new, fields = read("out.vtu")
+    assert validate(new, mesh) == []
+    assert {"u", "w"} <= set(fields)
+
+
+def test_remesh_picks_up_the_metric_beside_the_mesh(folder):
+    mesh = read("in.vtu")[0]
+    write("size.mesh", mesh)
+    write_metric("size.sol", mesh, np.tile(100 * np.eye(2), (mesh.n_points, 1, 1)))
+    assert run("remesh size.mesh -o out.mesh") == 0
+    assert 90 < read("out.mesh")[0].n_points < 180
+
+
+def test_transfer_carries_fields_to_another_mesh(folder, capsys):
+    write("target.vtu", square(7))
+    assert run("transfer in.vtu target.vtu -o out.vtu --json") == 0
+    assert report_of(capsys)["points_outside"] == 0
+    mesh, fields = read("out.vtu")
+    assert mesh.n_points == 64
+    assert fields["w"].values.max() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("kind", ["mesh", "vtu"])
+def test_loop_drives_a_solver_that_is_a_command(folder, capsys, kind):
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    words = f"loop in.vtu --complexities 100 -o run --files {kind} --json"
+    assert run(words, "--command", command) == 0
+    report = report_of(capsys)
+    assert report["stop_reason"] == "complexities done"
+    assert [step["complexity"] for step in report["steps"]] == [None, 100]
+    names = {path.name for path in (folder / "run").iterdir()}
+    assert {"report.json", "series.pvd", "series_001.vtu"} <= names
+    assert validate(read("run/series_001.vtu")[0], read("in.vtu")[0]) == []
+
+
+def test_study_prints_the_order_of_an_exact_solution(folder, capsys):
+    exact = "tanh(20 * (x**2 + y**2 - 0.5))"
+    words = "study in.vtu --complexities 400,1600 --json"
+    assert run(words, "--exact", exact) == 0
+    report = report_of(capsys)
+    assert report["order"] > 1.7
+    assert len(report["table"]) == 2
+
+
+def test_check_measures_a_mesh_in_a_metric(folder, capsys):
+    mesh = read("in.vtu")[0]
+    write_metric("m.sol", mesh, np.tile(100 * np.eye(2), (mesh.n_points, 1, 1)))
+    words = "check in.vtu --metric m.sol --reference in.mesh --json"
+    assert run(words) == 0
+    report = report_of(capsys)
+    assert report["valid"] is True
+    # Sides are exactly 1 in this metric and diagonals sqrt(2).
+    assert report["shortest_edge"] == pytest.approx(1.0)
+    assert report["longest_edge"] == pytest.approx(np.sqrt(2))
+
+
+def test_check_ends_with_1_when_the_mesh_is_not_that_of_the_reference(folder, capsys):
+    mesh = square(4)
+    write("other.vtu", type(mesh)(points=2 * mesh.points, cells=mesh.cells))
+    assert run("check other.vtu --reference in.vtu") == 1
+    assert "not valid" in capsys.readouterr().out
+
+
+def test_convert_changes_the_format_and_keeps_the_fields(folder):
+    assert run("convert in.vtu out.msh") == 0
+    mesh, fields = read("out.msh")
+    assert validate(mesh, read("in.vtu")[0]) == []
+    assert fields["u"].values == pytest.approx(read("in.vtu")[1]["u"].values)
+
+
+def test_doctor_finds_this_installation_sound(capsys):
+    assert main(["doctor", "--json"]) == 0
+    findings = {item["name"]: item for item in report_of(capsys)["findings"]}
+    assert findings["adaptation"]["state"] == "ok"
+
+
+def test_demo_prints_a_table(tmp_path, capsys):
+    pytest.importorskip("skfem")
+    pytest.importorskip("matplotlib")
+    words = f"demo -o {tmp_path}/demo --complexities 150,300"
+    assert run(words) == 0
+    said = capsys.readouterr().out
+    assert "Observed order" in said
+    assert "gain" in said
+    assert (tmp_path / "demo" / "report.json").exists()
+
+
+@pytest.mark.parametrize("module", COMMANDS)
+def test_every_help_shows_an_example_and_the_exit_codes(module, capsys):
+    name = module.__name__.rpartition(".")[2]
+    assert main([name, "--help"]) == 0
+    said = capsys.readouterr().out
+    assert f"anistar {name}" in said.partition("example:")[2]
+    assert "exit codes: 0 done, 1 failed" in said
+    assert "--json" in said

@@ -1,0 +1,192 @@
+import json
+
+import numpy as np
+import pytest
+from meshes import square
+
+from anistar.adapt import AdaptOptions
+from anistar.errors import MeshingError
+from anistar.fields import Field
+from anistar.loop import LoopError, LoopOptions, adapt_loop
+from anistar.metric import MetricOptions
+from anistar.remesh import RemeshOptions
+from anistar.validation import validate
+
+
+def layer(points):
+    return np.tanh(20 * ((points**2).sum(axis=-1) - 0.5))
+
+
+def interpolate(mesh, fields):
+    return {"u": layer(mesh.points)}
+
+
+def mean_of_u(mesh, fields):
+    return float(fields["u"].mean())
+
+
+def starting_at(complexity, **remesh):
+    return AdaptOptions(
+        metric=MetricOptions(target_complexity=complexity), remesh=RemeshOptions(**remesh)
+    )
+
+
+def test_each_complexity_makes_one_mesh_and_every_mesh_is_valid():
+    first = square(8)
+    loop = adapt_loop(interpolate, first, LoopOptions(complexities=[100, 200, 400]))
+    assert loop.stop_reason == "complexities done"
+    assert [step.complexity for step in loop.steps] == [None, 100, 200, 400]
+    for step in loop.steps:
+        assert validate(step.mesh, first) == []
+        assert len(step.fields["u"]) == step.mesh.n_points
+    assert loop.steps[0].metric is None
+    assert loop.steps[1].metric.shape == (loop.steps[1].mesh.n_points, 2, 2)
+
+
+def test_solve_gets_nothing_first_and_then_its_last_fields_on_the_new_mesh():
+    seen = []
+
+    def solve(mesh, fields):
+        seen.append({name: field.copy() for name, field in fields.items()})
+        return {"x": mesh.points[:, 0].copy(), "u": layer(mesh.points)}
+
+    loop = adapt_loop(solve, square(8), LoopOptions(complexities=[100]))
+    assert seen[0] == {}
+    assert np.abs(seen[1]["x"] - loop.steps[1].mesh.points[:, 0]).max() < 1e-12
+
+
+def test_the_target_error_is_reached_by_doubling_the_complexity():
+    options = LoopOptions(adapt=starting_at(100), target_error=5e-3)
+    loop = adapt_loop(interpolate, square(8), options)
+    assert loop.stop_reason == "target error 0.005 reached"
+    assert loop.steps[-1].error["u"] <= 5e-3 < loop.steps[-2].error["u"]
+    assert [step.complexity for step in loop.steps[1:4]] == [100, 200, 400]
+
+
+def test_a_vector_counts_with_all_its_components():
+    def solve(mesh, fields):
+        u = layer(mesh.points)
+        return {"v": np.stack([u, u], axis=1)}
+
+    one = adapt_loop(interpolate, square(8), LoopOptions(complexities=[100])).steps[0]
+    two = adapt_loop(solve, square(8), LoopOptions(complexities=[100])).steps[0]
+    assert two.error["v"] == pytest.approx(np.sqrt(2) * one.error["u"])
+
+
+def test_a_settled_quantity_of_interest_stops_the_loop():
+    options = LoopOptions(complexities=[200] * 9, qoi=lambda mesh, fields: 1.0, rtol=1e-3)
+    loop = adapt_loop(interpolate, square(8), options)
+    assert loop.stop_reason == "quantity of interest within rtol 0.001"
+    assert len(loop.steps) == 2
+
+
+def test_a_quantity_alone_starts_at_a_thousand_and_is_recorded():
+    options = LoopOptions(qoi=mean_of_u, rtol=1e-9, max_iterations=2)
+    loop = adapt_loop(interpolate, square(8), options)
+    assert [step.complexity for step in loop.steps] == [None, 1000, 2000]
+    assert loop.steps[2].qoi == pytest.approx(loop.steps[2].fields["u"].mean())
+
+
+def test_max_iterations_bounds_the_adaptations():
+    options = LoopOptions(complexities=[100, 100, 100, 100], max_iterations=2)
+    loop = adapt_loop(interpolate, square(8), options)
+    assert loop.stop_reason == "max_iterations 2 reached"
+    assert len(loop.steps) == 3
+
+
+def test_the_callback_sees_each_step_and_can_stop_the_loop():
+    seen = []
+
+    def callback(step):
+        seen.append(step.iteration)
+        return step.iteration == 1
+
+    options = LoopOptions(complexities=[100, 100, 100])
+    loop = adapt_loop(interpolate, square(8), options, callback=callback)
+    assert loop.stop_reason == "stopped by the callback"
+    assert seen == [0, 1]
+
+
+def test_the_loop_is_json():
+    loop = adapt_loop(interpolate, square(8), LoopOptions(complexities=[100], qoi=mean_of_u))
+    again = json.loads(json.dumps(loop.as_dict(), allow_nan=False))
+    assert again["steps"][1]["points"] == loop.steps[1].mesh.n_points
+    assert again["steps"][1]["report"]["metric"]["target_complexity"] == 100
+    assert again["steps"][0]["report"] is None
+
+
+class TestErrorsKeepTheStepsSoFar:
+    def run(self, solve, **options):
+        return adapt_loop(solve, square(8), LoopOptions(complexities=[100, 200], **options))
+
+    def spoiled(self, make, at=1):
+        """A solve whose call number `at` returns what `make` does to the values."""
+        calls = iter(range(9))
+
+        def solve(mesh, fields):
+            return {"u": make(layer(mesh.points)) if next(calls) == at else layer(mesh.points)}
+
+        return solve
+
+    def test_nan_is_named_by_iteration_field_and_point(self):
+        def poison(u):
+            u[7] = np.nan
+            return u
+
+        with pytest.raises(
+            LoopError, match=r"iteration 1: solve returned nan in field 'u' at point 7 \(.*; 1 such"
+        ) as caught:
+            self.run(self.spoiled(poison))
+        assert len(caught.value.loop.steps) == 1
+        assert caught.value.loop.stop_reason.startswith("iteration 1")
+        assert isinstance(caught.value.__cause__, ValueError)
+
+    def test_infinity_in_a_cell_field_is_named_by_cell(self):
+        def solve(mesh, fields):
+            q = np.zeros(mesh.n_cells)
+            q[3] = -np.inf
+            return {"u": layer(mesh.points), "q": Field(q, "cells")}
+
+        with pytest.raises(LoopError, match=r"iteration 0: solve returned -inf in .* at cell 3"):
+            self.run(solve)
+
+    def test_a_field_of_the_wrong_length_is_named(self):
+        with pytest.raises(LoopError, match="iteration 1: field 'u' has 3 values, the mesh has"):
+            self.run(self.spoiled(lambda u: u[:3]))
+
+    def test_something_else_than_fields_is_named(self):
+        with pytest.raises(LoopError, match="solve must return a dict of fields, not ndarray"):
+            self.run(lambda mesh, fields: layer(mesh.points))
+
+    def test_an_error_of_the_solver_is_the_cause(self):
+        def solve(mesh, fields):
+            raise ZeroDivisionError("singular")
+
+        with pytest.raises(LoopError, match="iteration 0: singular") as caught:
+            self.run(solve)
+        assert isinstance(caught.value.__cause__, ZeroDivisionError)
+
+    def test_an_error_of_the_mesher_is_one_too(self):
+        def interrupt(phase, fraction):
+            raise RuntimeError("pressed stop")
+
+        with pytest.raises(MeshingError, match=r"iteration 1: .*pressed stop") as caught:
+            self.run(interpolate, adapt=starting_at(100, callback=interrupt))
+        assert len(caught.value.loop.steps) == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({}, "give complexities, target_error, or qoi with rtol"),
+        ({"complexities": []}, "give complexities, target_error, or qoi with rtol"),
+        ({"complexities": [100, -1]}, r"complexities\[1\] must be above 0, not -1"),
+        ({"complexities": [100, np.nan]}, r"complexities\[1\] must be above 0, not nan"),
+        ({"target_error": 0.0}, r"target_error must be above 0, not 0\.0"),
+        ({"rtol": 0.1}, r"rtol = 0\.1 needs a qoi"),
+        ({"complexities": [1], "max_iterations": 0}, "max_iterations must be at least 1, not 0"),
+    ],
+)
+def test_a_bad_option_is_named_with_its_bound(options, message):
+    with pytest.raises(ValueError, match=message):
+        LoopOptions(**options)

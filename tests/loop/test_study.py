@@ -1,0 +1,56 @@
+import numpy as np
+import pytest
+from meshes import square
+
+from anistar.study import convergence_study, observed_order
+from anistar.validation import validate
+
+
+def layer(points):
+    return np.tanh(10 * ((points**2).sum(axis=-1) - 0.5))
+
+
+def interpolate(mesh, fields):
+    return {"u": layer(mesh.points)}
+
+
+def test_interpolation_converges_at_second_order():
+    study = convergence_study(interpolate, square(16), [400, 1600, 6400], exact=layer)
+    assert study.order == pytest.approx(2.0, abs=0.2)
+    assert study.table[0].order is None
+    assert study.table[-1].order == pytest.approx(2.0, abs=0.2)
+    assert [row.complexity for row in study.table] == [400, 1600, 6400]
+    for row, step in zip(study.table, study.steps, strict=True):
+        assert validate(step.mesh) == []
+        assert row.points == step.mesh.n_points
+
+
+def test_an_error_function_takes_the_place_of_the_exact_solution():
+    def error(mesh, fields):
+        return 1.0 / mesh.n_points
+
+    study = convergence_study(interpolate, square(8), [100, 400], error=error, repeats=1)
+    assert study.order == pytest.approx(2.0)
+    assert study.as_dict()["table"][1]["order"] == pytest.approx(2.0)
+
+
+def test_the_observed_order_is_that_of_a_power_law():
+    points = np.array([100, 400, 1600])
+    assert observed_order(points, 3.0 * points**-1.0, 2) == pytest.approx(2.0)
+    assert observed_order(points, 3.0 * points**-1.0, 3) == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"complexities": [100]}, "a study needs at least 2 complexities, not 1"),
+        ({"exact": None}, "give exactly one of error and exact"),
+        ({"error": lambda mesh, fields: 1.0}, "give exactly one of error and exact"),
+        ({"repeats": 0}, "repeats must be at least 1, not 0"),
+        ({"field": "w"}, r"field 'w' is none of the scalar fields \['u'\]"),
+    ],
+)
+def test_a_bad_argument_is_named(given, message):
+    arguments = {"complexities": [50, 100], "exact": layer, **given}
+    with pytest.raises(ValueError, match=message):
+        convergence_study(interpolate, square(4), **arguments)
