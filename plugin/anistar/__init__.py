@@ -10,7 +10,7 @@ from .mesh import Mesh
 from .metric import MetricError, MetricOptions
 from .remesh import Remeshed, RemeshOptions, remesh
 from .study import Study, convergence_study
-from .transfer import Transferred, TransferOptions, transfer
+from .transfer import TransferOptions, Transferred, transfer
 from .validation import Violation, validate
 
 __all__ = [

@@ -184,7 +184,8 @@ private:
                                              double radius, CounterRandom &random) {
     const double r = radius * std::sqrt(random.uniform());
     const double angle = 2 * std::numbers::pi * random.uniform();
-    return product<2>(inverse_root, Vector<2>(r * std::cos(angle), r * std::sin(angle)));
+    return product<2>(inverse_root,
+                      Vector<2>(r * std::cos(angle), r * std::sin(angle)));
   }
 
   static SymmetricTensor<2> inverse_root(const SymmetricTensor<2> &M) {

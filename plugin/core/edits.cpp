@@ -14,11 +14,11 @@ constexpr int max_growth = 8;
 bool keeps_vertices(const Triangulation<2> &mesh, const Cavity<2> &cavity) {
   return std::all_of(cavity.cells().begin(), cavity.cells().end(), [&](Index c) {
     return std::all_of(mesh.at(c).begin(), mesh.at(c).end(), [&](Index v) {
-      return std::any_of(
-          cavity.facets().begin(), cavity.facets().end(), [&](HalfFacet h) {
-            const auto [a, b] = mesh.facet(h);
-            return a == v || b == v;
-          });
+      return std::any_of(cavity.facets().begin(), cavity.facets().end(),
+                         [&](HalfFacet h) {
+                           const auto [a, b] = mesh.facet(h);
+                           return a == v || b == v;
+                         });
     });
   });
 }
