@@ -22,32 +22,42 @@ Index DelaunayTest::violator(Index cell, const SymmetricTensor<2> &M) {
   }
   stamp_[static_cast<std::size_t>(cell)] = epoch_;
   front_.clear();
-  const auto cross = [&](Index from, std::size_t i) {
+  // powers are those of the facet's vertices as seen from the cell that is left
+  const auto cross = [&](Index from, std::size_t i, const Power &first,
+                         const Power &second) {
     const auto k = static_cast<std::size_t>(from);
     const HalfFacet beyond = mesh_.neighbours[k][i];
     if (mesh_.constraints[k][i] == none && beyond.exists() &&
         stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_)
-      front_.push_back(beyond);
+      front_.push_back({beyond, second, first});
   };
   for (std::size_t i = 0; i < 3; ++i)
-    cross(cell, i);
-  // the front holds facets that meet the open ball, as seen from their far cell
+    cross(cell, i, {}, {});
   for (std::size_t k = 0; k < front_.size(); ++k) {
-    const HalfFacet entry = front_[k];
-    std::uint32_t &seen = stamp_[static_cast<std::size_t>(entry.cell())];
+    const Front front = front_[k];
+    const Index c0 = front.entry.cell();
+    std::uint32_t &seen = stamp_[static_cast<std::size_t>(c0)];
     if (seen == epoch_)
       continue;
     seen = epoch_;
-    const Index apex = cell_at(entry.cell())[entry.facet()];
-    const bool on_ball = apex == simplex[0] || apex == simplex[1] || apex == simplex[2];
-    if (!on_ball && in_metric_sphere(M, a, b, c, vertex(apex)) == Side::inside)
-      return apex;
-    for (std::size_t step = 1; step < 3; ++step) {
-      const std::size_t i = (entry.facet() + step) % 3;
-      const auto [p, q] = facet_of<2>(cell_at(entry.cell()), i);
-      if (segment_meets_sphere(M, a, b, c, vertex(p), vertex(q)))
-        cross(entry.cell(), i);
+    const std::size_t i = front.entry.facet();
+    const Cell<2> &far = cell_at(c0);
+    const Index apex = far[i];
+    const Vector<2> &e = vertex(apex);
+    Power power;
+    if (apex != simplex[0] && apex != simplex[1] && apex != simplex[2]) {
+      power = sphere_power(M, a, b, c, e);
+      if (power.value < -power.error ||
+          (power.value <= power.error &&
+           in_metric_sphere(M, a, b, c, e) == Side::inside))
+        return apex;
     }
+    // facet i is (p, q); the other two are (q, e) and (e, p)
+    const Vector<2> &p = vertex(far[(i + 1) % 3]), &q = vertex(far[(i + 2) % 3]);
+    if (segment_meets_sphere(M, a, b, c, q, e, front.second, power))
+      cross(c0, (i + 1) % 3, front.second, power);
+    if (segment_meets_sphere(M, a, b, c, e, p, power, front.first))
+      cross(c0, (i + 2) % 3, power, front.first);
   }
   return none;
 }

@@ -47,7 +47,14 @@ private:
   CertifiedMesh<2> mesh_;
   std::vector<std::uint32_t> stamp_;
   std::uint32_t epoch_ = 0;
-  std::vector<HalfFacet> front_;
+
+  /// A facet that meets the open ball, as seen from its far cell, and the powers of its
+  /// vertices.
+  struct Front {
+    HalfFacet entry;
+    Power first, second;
+  };
+  std::vector<Front> front_;
 };
 
 /// Bit k of result[c]: cell c is Delaunay in the metric of its vertex k.

@@ -91,13 +91,8 @@ Side exact_in_sphere(const SymmetricTensor<3> &M, const Vector<3> &a,
 
 namespace {
 
-/// A number known up to an error.
-struct Approximate {
-  double value, error;
-};
-
 /// The sign of x, or 2 when the error hides it.
-int certain_sign(const Approximate &x) {
+int certain_sign(const Power &x) {
   return x.value > x.error ? 1 : x.value < -x.error ? -1 : 2;
 }
 
@@ -116,28 +111,21 @@ bool exact_segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
 
 bool segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
                           const Vector<2> &b, const Vector<2> &c, const Vector<2> &p,
-                          const Vector<2> &q) {
+                          const Vector<2> &q, const Power &gamma, const Power &end) {
   // The power of p + s (q - p), times twice the area of abc, is alpha s^2 + beta s +
   // gamma with alpha > 0 and gamma >= 0: it is negative somewhere in 0 < s < 1 when its
   // minimum lies there and is negative.
-  const auto power = [&](const Vector<2> &x) -> Approximate {
-    if (x == a || x == b || x == c)
-      return {0, 0};
-    const Estimate det = sphere_determinant(M, a, b, c, x);
-    return {-det.value, detail::sphere_bound_2 * det.size + detail::underflow_guard};
-  };
-  const Approximate gamma = power(p), end = power(q);
   const Vector<2> r = q - p, u = b - a, v = c - a;
   const double square = quadratic<2>(M, r);
   const double square_size = M.entries[0] * r[0] * r[0] + M.entries[2] * r[1] * r[1] +
                              2 * std::abs(M.entries[1] * r[0] * r[1]);
   const double area = cross(u, v);
   const double area_size = std::abs(u[0] * v[1]) + std::abs(u[1] * v[0]);
-  const Approximate alpha{area * square,
+  const Power alpha{area * square,
                           detail::sphere_bound_2 * area_size * square_size +
                               detail::underflow_guard};
   const double beta_value = end.value - gamma.value - alpha.value;
-  const Approximate beta{
+  const Power beta{
       beta_value,
       end.error + gamma.error + alpha.error +
           4 * detail::round_off *

@@ -3,6 +3,7 @@
 #include "agreement.h"
 #include "outline.h"
 #include "refine.h"
+#include "star_check.h"
 #include "start.h"
 
 namespace anistar {
@@ -113,6 +114,14 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   watch.phase("agreement");
   const AgreementCounts agreed = agree(w, legaliser, monitor, settings.seed);
   renumber();
+
+  watch.phase("certificate");
+  const StarCheck stars =
+      check_stars(w, monitor, settings.seed, settings.threads, true);
+  out.simplex_ok = stars.simplex_ok;
+  out.star_ok = stars.star_ok;
+  out.counts["star_failures"] = static_cast<double>(stars.failures);
+  out.counts["star_moves"] = static_cast<double>(stars.moves);
   out.counts["disagreeing_before"] = static_cast<double>(agreed.edges_before);
   out.counts["disagreeing_after"] = static_cast<double>(agreed.edges_after);
   out.counts["trials"] = static_cast<double>(agreed.trials);

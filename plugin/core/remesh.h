@@ -16,6 +16,7 @@ struct RemeshSettings {
   std::size_t max_vertices = static_cast<std::size_t>(-1);
   double max_seconds = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 0;
+  int threads = 1;
 };
 
 /// The new mesh as flat arrays, and what happened.
@@ -26,6 +27,7 @@ struct RemeshResult {
   std::vector<Facet<2>> facets;
   std::vector<Index> facet_tags;
   Statistics statistics;
+  double simplex_ok = 0, star_ok = 0; ///< certified fractions
   std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase
   StopReason reason = StopReason::finished;

@@ -97,6 +97,8 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
   result["cell_tags"] = owned(std::move(out.cell_tags), {out.cells.size()});
   result["facets"] = rows<Index, 2>(out.facets);
   result["facet_tags"] = owned(std::move(out.facet_tags), {out.facets.size()});
+  result["simplex_ok"] = out.simplex_ok;
+  result["star_ok"] = out.star_ok;
   result["statistics"] = as_dict(out.statistics);
   result["counts"] = out.counts;
   result["seconds"] = out.seconds;

@@ -1,0 +1,84 @@
+#include "relocation.h"
+
+namespace anistar {
+namespace {
+
+/// What a relocation must keep, unless it was worse before.
+constexpr double quality_floor = .45;
+constexpr double shortest_kept = .6, longest_kept = 1.6;
+/// |ln l| up to here is free: a little inside the bounds of a unit edge.
+const double unit_excess = std::log(longest_unit) - .03;
+
+} // namespace
+
+bool StarScore::keeps(const StarScore &before) const {
+  return quality >= std::min(quality_floor, before.quality) &&
+         shortest >= std::min(shortest_kept, before.shortest) &&
+         longest <= std::max(longest_kept, before.longest);
+}
+
+int Relocation::count_disagreeing() const {
+  int n = 0;
+  for_each_edge([&](HalfFacet e) { n += disagrees(mesh_, e); });
+  return n;
+}
+
+bool Relocation::has_excess() const {
+  const Vertex<2> &v = mesh_.vertex(v_);
+  return std::any_of(star_.begin(), star_.end(), [&](HalfFacet h) {
+    const double l = edge_length(v, mesh_.vertex(mesh_.facet(h)[0]));
+    return l < shortest_unit || l > longest_unit;
+  });
+}
+
+StarScore Relocation::score() const {
+  StarScore out;
+  out.disagreeing = count_disagreeing();
+  const Vertex<2> &v = mesh_.vertex(v_);
+  for (HalfFacet h : star_) {
+    const auto [a, b] = mesh_.facet(h);
+    out.quality = std::min(out.quality, quality(v, mesh_.vertex(a), mesh_.vertex(b)));
+    const double l = edge_length(v, mesh_.vertex(a));
+    out.shortest = std::min(out.shortest, l);
+    out.longest = std::max(out.longest, l);
+    out.excess += std::max(0., std::abs(std::log(l)) - unit_excess);
+  }
+  return out;
+}
+
+bool disagrees(const Triangulation<2> &mesh, HalfFacet edge) {
+  const HalfFacet other = mesh.opposite(edge);
+  if (!other.exists() || mesh.constraint(edge) != none)
+    return false;
+  const auto [ia, ib] = mesh.facet(edge);
+  const Vertex<2> &a = mesh.vertex(ia), &b = mesh.vertex(ib);
+  const Vertex<2> &c = mesh.vertex(mesh.apex(edge)), &e = mesh.vertex(mesh.apex(other));
+  // det = <M, K> with K = sum_i cof_i x_i x_i^T, and <|M|, S> bounds its terms
+  const Vector<2> x[3] = {a.x - e.x, b.x - e.x, c.x - e.x};
+  double K[3] = {0, 0, 0}, S[3] = {0, 0, 0};
+  for (int i = 0; i < 3; ++i) {
+    const Vector<2> &p = x[(i + 1) % 3], &q = x[(i + 2) % 3], &u = x[i];
+    const double pq = p[0] * q[1], qp = p[1] * q[0];
+    const double minor = pq - qp, size = std::abs(pq) + std::abs(qp);
+    const double xx = u[0] * u[0], xy = 2 * u[0] * u[1], yy = u[1] * u[1];
+    K[0] += minor * xx;
+    K[1] += minor * xy;
+    K[2] += minor * yy;
+    S[0] += size * xx;
+    S[1] += size * std::abs(xy);
+    S[2] += size * yy;
+  }
+  for (const Vertex<2> *v : {&a, &b, &c, &e}) {
+    const auto &M = v->M.entries;
+    const double det = M[0] * K[0] + M[1] * K[1] + M[2] * K[2];
+    const double bound =
+        detail::sphere_bound_2 * (M[0] * S[0] + std::abs(M[1]) * S[1] + M[2] * S[2]);
+    if (det > bound)
+      return true;
+    if (det >= -bound && in_metric_sphere(v->M, a.x, b.x, c.x, e.x) == Side::inside)
+      return true;
+  }
+  return false;
+}
+
+} // namespace anistar

@@ -1,0 +1,90 @@
+#pragma once
+// Trial places of a vertex and what its star is worth there.
+
+#include "edits.h"
+#include "random.h"
+
+namespace anistar {
+
+/// Whether an edge is not Delaunay in the metric of one of the four vertices of its two
+/// cells: the local test, necessary for a certificate (the in-sphere determinant is
+/// linear in the metric, so one coefficient vector serves all four).
+[[nodiscard]] bool disagrees(const Triangulation<2> &mesh, HalfFacet edge);
+
+/// What a star is judged by when its vertex is moved for agreement.
+struct StarScore {
+  int disagreeing = 0; ///< edges of the star and of its link
+  double quality = 1;
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  double excess = 0; ///< sum over its edges of how far |ln length| is beyond a unit edge
+
+  /// No worse than the bounds of a relocation, or than it was.
+  [[nodiscard]] bool keeps(const StarScore &before) const;
+};
+
+/// A vertex with where its metric was found.
+struct Place {
+  Vertex<2> vertex;
+  Index background;
+};
+
+/// Moves vertices on trial. Between gather(v) and the next one, everything is about
+/// the star of v.
+class Relocation {
+public:
+  explicit Relocation(Workspace &w) : w_(w), mesh_(w.mesh) {}
+
+  void gather(Index v) {
+    v_ = v;
+    star_of(mesh_, v, star_);
+  }
+  [[nodiscard]] const std::vector<HalfFacet> &star() const { return star_; }
+  [[nodiscard]] int count_disagreeing() const;
+  [[nodiscard]] StarScore score() const;
+  /// Whether an edge of the star is not a unit edge: a quick look before score().
+  [[nodiscard]] bool has_excess() const;
+  /// visit(edge) for the edges of the star and of its link, each once.
+  template <class Visit> void for_each_edge(Visit visit) const {
+    for (HalfFacet h : star_) {
+      visit(h);
+      visit(HalfFacet(h.cell(), (h.facet() + 2) % 3));
+    }
+  }
+
+  [[nodiscard]] Place here() const {
+    return {mesh_.vertex(v_), mesh_.background_cell[static_cast<std::size_t>(v_)]};
+  }
+  void put(const Place &place) {
+    mesh_.vertex(v_) = place.vertex;
+    mesh_.background_cell[static_cast<std::size_t>(v_)] = place.background;
+  }
+  [[nodiscard]] Place at(const Vector<2> &x) const {
+    Place out{{}, mesh_.background_cell[static_cast<std::size_t>(v_)]};
+    out.vertex = w_.background.vertex(x, out.background);
+    return out;
+  }
+
+private:
+  Workspace &w_;
+  Triangulation<2> &mesh_;
+  Index v_ = none;
+  std::vector<HalfFacet> star_;
+};
+
+/// Random points of the unit ellipse of a metric.
+class EllipseSampler {
+public:
+  explicit EllipseSampler(const SymmetricTensor<2> &M)
+      : root_(matrix_function(M, [](double x) { return 1 / std::sqrt(x); })) {}
+
+  [[nodiscard]] Vector<2> step(double radius, CounterRandom &random) const {
+    const double r = radius * std::sqrt(random.uniform());
+    const double angle = 2 * std::numbers::pi * random.uniform();
+    return product<2>(root_, Vector<2>(r * std::cos(angle), r * std::sin(angle)));
+  }
+
+private:
+  SymmetricTensor<2> root_; ///< M^(-1/2)
+};
+
+} // namespace anistar

@@ -1,0 +1,163 @@
+#include "star_check.h"
+
+#include "moves.h"
+#include "relocation.h"
+
+#include <bit>
+#include <utility>
+
+namespace anistar {
+namespace {
+
+constexpr int max_rounds = 6;
+/// Trial places of each vertex that could mend a failure.
+constexpr int n_candidates = 16;
+constexpr double radius = .3;
+/// More failures than this fraction of the cells are no accidents of an agreeing mesh.
+constexpr double few = .005;
+
+class Mender {
+public:
+  Mender(Workspace &w, std::uint64_t seed)
+      : w_(w), mesh_(w.mesh), seed_(seed), relocation_(w),
+        test_({mesh_.vertices, mesh_.cells, mesh_.neighbours, mesh_.constraints}),
+        seen_(mesh_.cells.size(), 0) {}
+
+  /// Moves one vertex of a failing cell, or the vertex inside its ball, such that fewer
+  /// cells around fail. @returns whether it found a move.
+  bool mend(Index cell, int round) {
+    std::vector<Index> culprits;
+    for (Index v : mesh_.at(cell)) {
+      const Index inside = test_.violator(cell, mesh_.vertex(v).M);
+      if (inside != none &&
+          std::find(culprits.begin(), culprits.end(), inside) == culprits.end())
+        culprits.push_back(inside);
+    }
+    if (culprits.empty())
+      return false; // an earlier move has mended it
+    culprits.insert(culprits.end(), mesh_.at(cell).begin(), mesh_.at(cell).end());
+    for (Index v : culprits)
+      if (mesh_.feature[static_cast<std::size_t>(v)] == Triangulation<2>::interior &&
+          move(v, round))
+        return true;
+    return false;
+  }
+
+private:
+  Workspace &w_;
+  Triangulation<2> &mesh_;
+  std::uint64_t seed_;
+  Relocation relocation_;
+  DelaunayTest test_;
+  std::vector<std::uint32_t> seen_;
+  std::uint32_t epoch_ = 0;
+  std::vector<HalfFacet> ring_;
+
+  /// Cells within three layers of the star: those whose ball can reach the vertex, but
+  /// for accidents that the next round finds.
+  [[nodiscard]] std::vector<Index> cells_around() {
+    ++epoch_;
+    std::vector<Index> cells;
+    const auto add = [&](Index c) {
+      if (std::exchange(seen_[static_cast<std::size_t>(c)], epoch_) != epoch_)
+        cells.push_back(c);
+    };
+    for (HalfFacet h : relocation_.star())
+      add(h.cell());
+    std::size_t begin = 0;
+    for (int layer = 0; layer < 3; ++layer) {
+      const std::size_t end = cells.size();
+      for (; begin < end; ++begin)
+        for (std::size_t i = 0; i < 3; ++i) {
+          const HalfFacet beyond = mesh_.opposite(HalfFacet(cells[begin], i));
+          if (beyond.exists())
+            add(beyond.cell());
+        }
+    }
+    return cells;
+  }
+
+  [[nodiscard]] int failures(const std::vector<Index> &cells) {
+    int n = 0;
+    for (Index c : cells)
+      n += 3 - std::popcount(static_cast<unsigned>(test_.bits(c)));
+    return n;
+  }
+
+  bool move(Index v, int round) {
+    relocation_.gather(v);
+    const Place from = relocation_.here();
+    const StarScore before = relocation_.score();
+    const std::vector<Index> cells = cells_around();
+    const int failing = failures(cells);
+    CounterRandom random(seed_ ^ 0x5741u, static_cast<std::uint64_t>(v),
+                         static_cast<std::uint64_t>(round));
+    const EllipseSampler ellipse(from.vertex.M);
+    for (int k = 0; k < n_candidates; ++k) {
+      const Vector<2> x =
+          from.vertex.x + ellipse.step(radius * (k + 1) / n_candidates, random);
+      if (!may_move(mesh_, from.vertex.x, x, relocation_.star()))
+        continue;
+      relocation_.put(relocation_.at(x));
+      const StarScore found = relocation_.score();
+      if (found.keeps(before) && found.disagreeing <= before.disagreeing &&
+          failures(cells) < failing)
+        return true;
+      relocation_.put(from);
+    }
+    return false;
+  }
+};
+
+std::vector<Index> failing_cells(const std::vector<std::uint8_t> &bits) {
+  std::vector<Index> cells;
+  for (std::size_t c = 0; c < bits.size(); ++c)
+    if (bits[c] != all_vertices)
+      cells.push_back(static_cast<Index>(c));
+  return cells;
+}
+
+void count_certified(const Triangulation<2> &mesh, StarCheck &check) {
+  std::vector<bool> ok(mesh.vertices.size(), true);
+  std::size_t cells = 0;
+  for (std::size_t c = 0; c < check.bits.size(); ++c) {
+    cells += check.bits[c] == all_vertices;
+    for (std::size_t k = 0; k < 3; ++k)
+      if ((check.bits[c] >> k & 1) == 0)
+        ok[static_cast<std::size_t>(mesh.cells[c][k])] = false;
+  }
+  check.simplex_ok = static_cast<double>(cells) / static_cast<double>(mesh.n_cells());
+  check.star_ok = static_cast<double>(std::count(ok.begin(), ok.end(), true)) /
+                  static_cast<double>(ok.size());
+}
+
+} // namespace
+
+StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed, int threads,
+                      bool mend) {
+  const Triangulation<2> &mesh = w.mesh;
+  StarCheck check;
+  Mender mender(w, seed);
+  for (int round = 0; round <= max_rounds; ++round) {
+    check.bits = delaunay_bits(
+        {mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints}, threads);
+    const std::vector<Index> failing = failing_cells(check.bits);
+    if (round == 0)
+      check.failures = failing.size();
+    const bool hopeless =
+        static_cast<double>(failing.size()) > few * static_cast<double>(mesh.n_cells());
+    if (failing.empty() || !mend || hopeless || round == max_rounds)
+      break;
+    std::size_t moves = 0;
+    for (Index c : failing)
+      if (monitor.keep_going(0, 0))
+        moves += mender.mend(c, round);
+    check.moves += moves;
+    if (moves == 0)
+      break;
+  }
+  count_certified(mesh, check);
+  return check;
+}
+
+} // namespace anistar
