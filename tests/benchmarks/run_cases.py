@@ -65,7 +65,7 @@ class Case:
         density = np.linalg.det(H) ** (-1 / 6)
         return complexity / scale * density[:, None, None] * H
 
-    def scale(self, n: int = 400) -> float:
+    def scale(self, n: int = 150) -> float:
         """Return the complexity of ``det|H|^(-1/6) |H|``, by quadrature on a fine grid."""
         mesh = square(n)
         weights, barycentric = simplex_rule(2)
