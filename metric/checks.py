@@ -88,10 +88,12 @@ def check_values(values: ArrayLike, *, n_points: int, name: str) -> NDArray[np.f
     Raises
     ------
     ValueError
-        If the length is not `n_points` or a value is NaN or infinite.
+        If it is no scalar or vector, the length is not `n_points`, or a value is not finite.
     """
     array = np.ascontiguousarray(values, dtype=np.float64)
-    if array.ndim not in (1, 2) or len(array) != n_points:
+    if array.ndim not in (1, 2):
+        raise ValueError(f"field '{name}' has shape {array.shape}: not a scalar or a vector")
+    if len(array) != n_points:
         raise ValueError(
             f"field '{name}' has shape {array.shape} but the mesh has {n_points} points"
         )

@@ -54,7 +54,7 @@ def grade(
     vertex.
     """
     sources, M = graph.sources, metric.copy()
-    raised = determinant(M)
+    raised = _density(M)
     rounds = updates = 0
     while raised.any():
         if rounds == max_rounds:
@@ -70,7 +70,7 @@ def grade(
         requests = compose(asked, vectors[at])
         for turn in _turns(q):
             M[q[turn]], changed = intersection(M[q[turn]], requests[turn], tolerance)
-            raised[q[turn][changed]] = determinant(M[q[turn][changed]])
+            raised[q[turn][changed]] = _density(M[q[turn][changed]])
             updates += int(changed.sum())
     return Growth(metric=M, rounds=rounds, updates=updates, converged=True)
 
@@ -87,6 +87,11 @@ def grown(values: Array, vectors: Array, v: Array, model: str, log_factor: float
         return np.asarray(values / uniform**2)
     mixed = uniform * np.sqrt(np.sqrt(np.sqrt(physical / uniform)))
     return np.asarray(values / mixed**2)
+
+
+def _density(M: Array) -> Array:
+    """Order of the queue (n,), positive even where round-off eats the determinant."""
+    return np.maximum(determinant(M), np.finfo(np.float64).tiny)
 
 
 def _turns(q: NDArray[np.int32]) -> list[NDArray[np.intp]]:

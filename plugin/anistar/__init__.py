@@ -1,24 +1,42 @@
 """anistar: certified anisotropic Delaunay mesh adaptation for any PDE code."""
 
 from . import metric
+from .adapt import Adapted, AdaptOptions, adapt
 from .errors import FormatError, MeshingError
 from .fields import Field
+from .formats import read, write
+from .loop import Loop, LoopOptions, adapt_loop
 from .mesh import Mesh
 from .metric import MetricError, MetricOptions
 from .remesh import Remeshed, RemeshOptions, remesh
+from .study import Study, convergence_study
+from .transfer import TransferOptions, Transferred, transfer
 from .validation import Violation, validate
 
 __all__ = [
+    "AdaptOptions",
+    "Adapted",
     "Field",
     "FormatError",
+    "Loop",
+    "LoopOptions",
     "Mesh",
     "MeshingError",
     "MetricError",
     "MetricOptions",
     "RemeshOptions",
     "Remeshed",
+    "Study",
+    "TransferOptions",
+    "Transferred",
     "Violation",
+    "adapt",
+    "adapt_loop",
+    "convergence_study",
     "metric",
+    "read",
     "remesh",
+    "transfer",
     "validate",
+    "write",
 ]

@@ -11,8 +11,8 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
                                      std::size_t n_points) {
   std::vector<Neighbours<d>> neighbours(cells.size());
   const auto key_of = [&](const HalfFacet &half) {
-    Facet<d> key = facet_of<d>(cells[static_cast<std::size_t>(half.cell())],
-                               half.facet());
+    Facet<d> key =
+        facet_of<d>(cells[static_cast<std::size_t>(half.cell())], half.facet());
     std::sort(key.begin(), key.end());
     return key;
   };
@@ -31,8 +31,8 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (std::size_t i = 0; i <= d; ++i) {
       const Facet<d> facet = facet_of<d>(cells[c], i);
-      const auto v = static_cast<std::size_t>(
-          *std::min_element(facet.begin(), facet.end()));
+      const auto v =
+          static_cast<std::size_t>(*std::min_element(facet.begin(), facet.end()));
       bucket[static_cast<std::size_t>(fill[v]++)] = HalfFacet(static_cast<Index>(c), i);
     }
   for (std::size_t v = 0; v < n_points; ++v)
@@ -44,7 +44,8 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
         if (key_of(two) != key)
           continue;
         HalfFacet &side = neighbours[static_cast<std::size_t>(one.cell())][one.facet()];
-        HalfFacet &other = neighbours[static_cast<std::size_t>(two.cell())][two.facet()];
+        HalfFacet &other =
+            neighbours[static_cast<std::size_t>(two.cell())][two.facet()];
         if (side.exists() || other.exists())
           throw std::invalid_argument("a facet of cell " + std::to_string(one.cell()) +
                                       " is shared by more than two cells");

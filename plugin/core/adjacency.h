@@ -12,7 +12,8 @@ namespace anistar {
 using Index = std::int32_t;
 inline constexpr Index none = -1;
 
-/// The d + 1 vertices of a simplex, positively oriented. Facet i lies opposite vertex i.
+/// The d + 1 vertices of a simplex, positively oriented. Facet i lies opposite vertex
+/// i.
 template <std::size_t d> using Cell = std::array<Index, d + 1>;
 template <std::size_t d> using Facet = std::array<Index, d>;
 

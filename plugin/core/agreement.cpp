@@ -101,8 +101,7 @@ private:
     const std::size_t n = mesh_.vertices.size();
     const auto [a, b] = mesh_.facet(edge);
     for (Index v : {a, b, mesh_.apex(edge), mesh_.apex(mesh_.opposite(edge))})
-      if (mesh_.feature[static_cast<std::size_t>(v)] != Triangulation<2>::corner)
-        work_.add(v, n);
+      work_.add(v, n);
   }
 
   /// The one search for disagreeing edges.
@@ -185,7 +184,8 @@ private:
                                              double radius, CounterRandom &random) {
     const double r = radius * std::sqrt(random.uniform());
     const double angle = 2 * std::numbers::pi * random.uniform();
-    return product<2>(inverse_root, Vector<2>(r * std::cos(angle), r * std::sin(angle)));
+    return product<2>(inverse_root,
+                      Vector<2>(r * std::cos(angle), r * std::sin(angle)));
   }
 
   static SymmetricTensor<2> inverse_root(const SymmetricTensor<2> &M) {
@@ -193,12 +193,13 @@ private:
   }
 
   bool relocate(Index v, double radius, int pass) {
-    if (!mesh_.is_used(v))
+    const Index feature = mesh_.feature[static_cast<std::size_t>(v)];
+    if (!mesh_.is_used(v) || feature == Triangulation<2>::corner)
       return false;
     star_of(mesh_, v, star_);
     if (count_disagreeing(star_) == 0)
       return false;
-    if (mesh_.feature[static_cast<std::size_t>(v)] == 1)
+    if (feature == 1)
       return relocate_on_curve(v, pass);
     const Place from = place_of(v);
     const StarScore before = score(v);

@@ -23,8 +23,8 @@ struct AgreementCounts {
 [[nodiscard]] bool disagrees(const Triangulation<2> &mesh, HalfFacet edge);
 
 /// Relocates vertices at disagreeing edges, by exact scoring of the change in their
-/// number, then walks on the plateau while few are left. The set of vertices to visit is
-/// maintained, never searched for again.
+/// number, then walks on the plateau while few are left. The set of vertices to visit
+/// is maintained, never searched for again.
 AgreementCounts agree(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                       std::uint64_t seed);
 

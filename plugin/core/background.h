@@ -7,8 +7,9 @@
 namespace anistar {
 
 /// P1 interpolation of log M on the given mesh: positive definite everywhere, and a
-/// mean of sizes rather than of their inverse squares (Arsigny, Fillard, Pennec, Ayache,
-/// Log-Euclidean metrics, 2006). Points outside take the value of the nearest point.
+/// mean of sizes rather than of their inverse squares (Arsigny, Fillard, Pennec,
+/// Ayache, Log-Euclidean metrics, 2006). Points outside take the value of the nearest
+/// point.
 template <std::size_t d> class Background {
 public:
   /// @pre every metric is positive definite.
@@ -26,9 +27,9 @@ public:
     cell = at.cell;
     SymmetricTensor<d> L;
     for (std::size_t i = 0; i <= d; ++i)
-      L += at.barycentric[i] *
-           logarithm_[static_cast<std::size_t>(
-               locator_.cells()[static_cast<std::size_t>(cell)][i])];
+      L +=
+          at.barycentric[i] * logarithm_[static_cast<std::size_t>(
+                                  locator_.cells()[static_cast<std::size_t>(cell)][i])];
     return exp<d>(L);
   }
 

@@ -32,9 +32,9 @@ public:
   }
   [[nodiscard]] std::span<const Index> cells() const { return cells_; }
 
-  /// Finds the facets over which the star of `apex` will be built: those of the cavity's
-  /// boundary that do not contain it. `skipped` facets lie on the boundary of the domain
-  /// and end there: the apex is on them, or they vanish.
+  /// Finds the facets over which the star of `apex` will be built: those of the
+  /// cavity's boundary that do not contain it. `skipped` facets lie on the boundary of
+  /// the domain and end there: the apex is on them, or they vanish.
   void bound(Index apex, std::span<const HalfFacet> skipped = {});
   [[nodiscard]] std::span<const HalfFacet> facets() const { return facets_; }
 
@@ -52,8 +52,8 @@ public:
   /// Replaces the cavity by the star of the apex. The new cells keep the region of the
   /// cavity cell behind their facet, outer facets keep their constraints, and `ridges`
   /// gives those of facets at the apex.
-  /// @pre bound(apex, ...) was called and is_star_shaped holds; vertices that vanish lie
-  /// inside the cavity and are marked unused by the caller.
+  /// @pre bound(apex, ...) was called and is_star_shaped holds; vertices that vanish
+  /// lie inside the cavity and are marked unused by the caller.
   void fill(Index apex, std::span<const RidgeConstraint<d>> ridges = {});
 
   /// The cells that the last fill() made, each as the half-facet opposite the apex.

@@ -2,8 +2,8 @@
 // The anisotropic Delaunay property of a mesh, simplex by simplex and star by star.
 //
 // A simplex is Delaunay in a metric M when no vertex that it can reach lies strictly
-// inside its M-circumball. Reach: along mesh cells that meet the open ball, never across
-// a boundary facet or a constrained facet; ties pass. On a convex domain without
+// inside its M-circumball. Reach: along mesh cells that meet the open ball, never
+// across a boundary facet or a constrained facet; ties pass. On a convex domain without
 // constraints this is membership in the Delaunay triangulation of all vertices for the
 // constant metric M (Boissonnat, Wormser, Yvinec, Anisotropic Delaunay Mesh Generation,
 // RR-7712 v2, section 3).

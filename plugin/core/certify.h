@@ -6,7 +6,8 @@
 namespace anistar {
 
 struct CertificateResult {
-  std::vector<std::uint8_t> delaunay; ///< bit k: cell Delaunay in the metric of vertex k
+  std::vector<std::uint8_t>
+      delaunay; ///< bit k: cell Delaunay in the metric of vertex k
   std::vector<std::uint8_t> simplex_ok;
   std::vector<std::uint8_t> star_ok;
   std::vector<double> distortion;  ///< largest gamma(M_v, M_w) over the edges vw at v
@@ -15,8 +16,8 @@ struct CertificateResult {
   /// Stars that pass also when the walk crosses interfaces (not the boundary).
   std::size_t stars_without_interfaces = 0;
   /// The paper's restricted stars: cells whose circumcentre lies in the domain for the
-  /// metric of one vertex at least (v2, section 3) or of all of them (v1, section 3), and
-  /// how many of these are in the stars of all vertices for which they count.
+  /// metric of one vertex at least (v2, section 3) or of all of them (v1, section 3),
+  /// and how many of these are in the stars of all vertices for which they count.
   std::size_t restricted_v2 = 0, restricted_v2_ok = 0;
   std::size_t restricted_v1 = 0, restricted_v1_ok = 0;
 };

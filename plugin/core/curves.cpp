@@ -153,7 +153,7 @@ void Curve::fit(std::vector<Vector<2>> points, const Projection *projection) {
   points_ = std::move(points);
   projection_ = projection;
   const std::size_t n = n_segments();
-  
+
   std::vector<Vector<2>> chord(n);
   for (std::size_t k = 0; k < n; ++k)
     chord[k] = points_[k + 1] - points_[k];

@@ -28,12 +28,12 @@ struct GeometryInput {
 /// No region: the outside of the domain.
 inline constexpr Index no_region = -1;
 
-/// A chain of facets with one tag and the same regions on its two sides. The curve is C1:
-/// cubic Hermite between the geometry's points with the tangents of the circles through
-/// three of them, exact where three points lie on a line.
+/// A chain of facets with one tag and the same regions on its two sides. The curve is
+/// C1: cubic Hermite between the geometry's points with the tangents of the circles
+/// through three of them, exact where three points lie on a line.
 class Curve {
 public:
-  std::vector<Index> vertices;   ///< geometry points; front == back on a loop
+  std::vector<Index> vertices; ///< geometry points; front == back on a loop
   Index tag = 0;
   Index left = no_region, right = no_region; ///< cell tags beside it
   bool is_frozen = false;
@@ -66,8 +66,8 @@ struct Geometry {
 };
 
 /// Cuts the facets into curves at corners: where other than two facets meet, tags or
-/// regions change, the chain turns by more than the ridge angle, two straight runs meet,
-/// or the caller says so.
+/// regions change, the chain turns by more than the ridge angle, two straight runs
+/// meet, or the caller says so.
 /// @throws std::invalid_argument for a facet that is no facet of a cell.
 [[nodiscard]] Geometry make_geometry(const GeometryInput &input,
                                      const Projection *projection);

@@ -10,6 +10,19 @@ constexpr double on_edge = 1e-6;
 /// A cavity may grow by this many cells to see a point of a curve.
 constexpr int max_growth = 8;
 
+/// Whether every vertex of the cavity is on a facet that the new star will have.
+bool keeps_vertices(const Triangulation<2> &mesh, const Cavity<2> &cavity) {
+  return std::all_of(cavity.cells().begin(), cavity.cells().end(), [&](Index c) {
+    return std::all_of(mesh.at(c).begin(), mesh.at(c).end(), [&](Index v) {
+      return std::any_of(cavity.facets().begin(), cavity.facets().end(),
+                         [&](HalfFacet h) {
+                           const auto [a, b] = mesh.facet(h);
+                           return a == v || b == v;
+                         });
+    });
+  });
+}
+
 /// Adds the cells behind facets that x does not see, but never across a constraint.
 bool grow_to_see(Triangulation<2> &mesh, Cavity<2> &cavity, Index apex,
                  std::span<const HalfFacet> skipped, const Vector<2> &x) {
@@ -25,7 +38,7 @@ bool grow_to_see(Triangulation<2> &mesh, Cavity<2> &cavity, Index apex,
       }
     }
     if (!hidden.exists())
-      return true;
+      return growth == 0 || keeps_vertices(mesh, cavity);
     if (mesh.constraint(hidden) != none)
       return false;
     cavity.add(mesh.opposite(hidden).cell());

@@ -53,10 +53,10 @@ struct Walk {
 /// would be inverted. `ridge` gets the constraint of the edge that closes the curve.
 struct Collapse {
   Index vertex, target;
-  std::vector<HalfFacet> star;                ///< scratch
-  std::vector<HalfFacet> skipped;             ///< boundary edges that vanish
-  std::vector<RidgeConstraint<2>> ridges;     ///< the merged curve edge
-  CurveEdge merged{};                         ///< valid when ridges is not empty
+  std::vector<HalfFacet> star;            ///< scratch
+  std::vector<HalfFacet> skipped;         ///< boundary edges that vanish
+  std::vector<RidgeConstraint<2>> ridges; ///< the merged curve edge
+  CurveEdge merged{};                     ///< valid when ridges is not empty
 };
 [[nodiscard]] bool bound_collapse(Workspace &w, Collapse &collapse);
 void fill_collapse(Workspace &w, Collapse &collapse);

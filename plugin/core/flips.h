@@ -19,8 +19,8 @@ public:
   /// All edges of the star of v and of its link.
   void push_star(Index v);
 
-  /// Flips until the stack is empty or `cap` flips were made. The cells that changed are
-  /// appended to `changed` when given.
+  /// Flips until the stack is empty or `cap` flips were made. The cells that changed
+  /// are appended to `changed` when given.
   void run(int cap, std::vector<Index> *changed = nullptr);
 
   [[nodiscard]] std::size_t n_flips() const { return n_flips_; }

@@ -1,6 +1,7 @@
 #include "gradation.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace anistar {
@@ -12,6 +13,11 @@ namespace {
 /// takes more rounds. The share is relative, so that the unit of length does not
 /// matter.
 constexpr double band = 0.25;
+
+/// The order of the queue; positive even where round-off eats the determinant.
+template <std::size_t d> double density(const SymmetricTensor<d> &M) {
+  return std::max(determinant(M), std::numeric_limits<double>::min());
+}
 
 double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
@@ -49,7 +55,7 @@ public:
       : points_(points), offsets_(offsets), neighbours_(neighbours), options_(options),
         raised_(metric.size()), queue_(metric.size()) {
     for (std::size_t v = 0; v < metric.size(); ++v)
-      raised_[v] = determinant(metric[v]);
+      raised_[v] = density(metric[v]);
     std::iota(queue_.begin(), queue_.end(), std::size_t{0});
     result_.metric = std::move(metric);
   }
@@ -102,7 +108,7 @@ private:
                   options_.tolerance)) {
           if (raised_[q] == 0)
             queue_.push_back(q);
-          raised_[q] = determinant(result_.metric[q]);
+          raised_[q] = density(result_.metric[q]);
           ++result_.updates;
         }
       }
@@ -112,7 +118,7 @@ private:
   std::span<const Vector<d>> points_;
   std::span<const std::int32_t> offsets_, neighbours_;
   GradationOptions options_;
-  std::vector<double> raised_; // determinants at the raised vertices, else zero
+  std::vector<double> raised_; // densities of the raised vertices, else zero
   std::vector<std::size_t> queue_, front_;
   std::vector<Spectrum<d>> spectra_;
   Graded<d> result_;

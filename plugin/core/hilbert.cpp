@@ -52,7 +52,7 @@ std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points) {
     high = high.cwiseMax(p);
   }
   const double extent = std::max((high - low).maxCoeff(), 1e-300);
-  const double cells = static_cast<double>((1u << bits<d>) - 1);
+  const double cells = static_cast<double>((1u << bits<d>)-1);
   std::vector<std::pair<std::uint64_t, std::int32_t>> keyed(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
     std::array<std::uint32_t, d> x;

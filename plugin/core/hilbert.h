@@ -13,6 +13,7 @@ namespace anistar {
 /// Indices of `points` in the order in which a Hilbert curve through their bounding box
 /// visits them; ties keep the given order.
 template <std::size_t d>
-[[nodiscard]] std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points);
+[[nodiscard]] std::vector<std::int32_t>
+hilbert_order(std::span<const Vector<d>> points);
 
 } // namespace anistar

@@ -74,8 +74,8 @@ private:
       const auto [a, b] = w_.mesh.facet(h);
       if (edge_length(w_.mesh.vertex(apex), w_.mesh.vertex(a)) > longest_after_collapse)
         return 0;
-      worst = std::min(worst, quality(w_.mesh.vertex(apex), w_.mesh.vertex(a),
-                                      w_.mesh.vertex(b)));
+      worst = std::min(
+          worst, quality(w_.mesh.vertex(apex), w_.mesh.vertex(a), w_.mesh.vertex(b)));
     }
     return worst;
   }
@@ -93,8 +93,8 @@ LengthCounts control_lengths(Workspace &w, Legaliser &legaliser, Monitor &monito
         w.mesh.feature[static_cast<std::size_t>(v)] != Triangulation<2>::corner)
       counts.collapses += control.collapse_short(v, shortest);
   const auto m = static_cast<Index>(w.mesh.cells.size());
-  for (Index c = 0; c < m && monitor.keep_going(w.mesh.vertices.size(), .5 + .5 * c / m);
-       ++c)
+  for (Index c = 0;
+       c < m && monitor.keep_going(w.mesh.vertices.size(), .5 + .5 * c / m); ++c)
     for (std::size_t i = 0; i < 3; ++i) {
       const HalfFacet edge(c, i);
       if (!w.mesh.is_alive(c))

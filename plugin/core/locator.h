@@ -19,8 +19,8 @@ template <std::size_t d> struct Location {
   double distance = 0;
 };
 
-/// Finds the cell of a point by a walk, then by a box tree, and the nearest point of the
-/// mesh for points outside. Safe for concurrent use once built.
+/// Finds the cell of a point by a walk, then by a box tree, and the nearest point of
+/// the mesh for points outside. Safe for concurrent use once built.
 template <std::size_t d> class Locator {
 public:
   /// @pre cells positively oriented. @throws std::invalid_argument (see adjacency).

@@ -52,8 +52,8 @@ template <std::size_t d>
   const Vector<2> u = b.x - a.x, v = c.x - a.x, w = c.x - b.x;
   const Vertex<2> &dense = a.weight <= b.weight ? (a.weight <= c.weight ? a : c)
                                                 : (b.weight <= c.weight ? b : c);
-  const double squares = quadratic<2>(dense.M, u) + quadratic<2>(dense.M, v) +
-                         quadratic<2>(dense.M, w);
+  const double squares =
+      quadratic<2>(dense.M, u) + quadratic<2>(dense.M, v) + quadratic<2>(dense.M, w);
   return 2 * std::numbers::sqrt3 * cross(u, v) / (dense.weight * squares);
 }
 

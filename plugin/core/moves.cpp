@@ -7,13 +7,14 @@ namespace {
 
 /// Step of the pliant forces, the damping of the published algorithm.
 constexpr double pliant_step = .2;
-/// Over-relaxation is unstable where the metric varies: stop short of the circumcentres.
+/// Over-relaxation is unstable where the metric varies: stop short of the
+/// circumcentres.
 constexpr double odt_step = .8;
 /// A move may shrink a cell of the star to this fraction of its area.
 constexpr double smallest_area = .05;
 
-/// Centre of the circumscribed ellipse of v, a, b in their mean metric, from v, weighted
-/// by the area in that metric.
+/// Centre of the circumscribed ellipse of v, a, b in their mean metric, from v,
+/// weighted by the area in that metric.
 struct Weighted {
   Vector<2> sum = Vector<2>::Zero();
   double weight = 0;

@@ -16,8 +16,8 @@ namespace anistar {
                                          const Vertex<2> &v,
                                          std::span<const HalfFacet> star);
 
-/// Whether v may go to x: every cell of its star stays positive, exactly, and keeps some
-/// of its area.
+/// Whether v may go to x: every cell of its star stays positive, exactly, and keeps
+/// some of its area.
 [[nodiscard]] bool may_move(const Triangulation<2> &mesh, const Vector<2> &from,
                             const Vector<2> &x, std::span<const HalfFacet> star);
 

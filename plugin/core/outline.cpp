@@ -9,8 +9,8 @@
 namespace anistar {
 namespace {
 
-/// Pieces of a curve over which its metric length is taken by the trapezium-like rule of
-/// mean_length: short against the unit edge.
+/// Pieces of a curve over which its metric length is taken by the trapezium-like rule
+/// of mean_length: short against the unit edge.
 constexpr double sample_length = .25;
 constexpr int max_sample_depth = 24;
 /// Chords are bisected at most this often to meet the Hausdorff bound.
@@ -167,8 +167,8 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
   const auto fixed = [&](Index v) {
     Index &known = vertex_of[static_cast<std::size_t>(v)];
     if (known == none)
-      known = add(geometry.points[static_cast<std::size_t>(v)],
-                  Triangulation<2>::corner);
+      known =
+          add(geometry.points[static_cast<std::size_t>(v)], Triangulation<2>::corner);
     return known;
   };
   for (std::size_t v = 0; v < geometry.points.size(); ++v)
@@ -191,8 +191,7 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
       const Index next =
           is_last ? fixed(curve.vertices.back())
                   : add(curve.at(t[k]), curve.is_frozen ? Triangulation<2>::corner : 1);
-      outline.edges.push_back(
-          {static_cast<Index>(c), t[k - 1], t[k], previous, next});
+      outline.edges.push_back({static_cast<Index>(c), t[k - 1], t[k], previous, next});
       previous = next;
     }
   }
@@ -226,7 +225,8 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
       curve.straighten(static_cast<std::size_t>(segment));
       for (const CurveEdge &other : outline.edges)
         if (other.curve == edge.curve)
-          for (const auto &[v, t] : {std::pair(other.v0, other.t0), {other.v1, other.t1}})
+          for (const auto &[v, t] :
+               {std::pair(other.v0, other.t0), {other.v1, other.t1}})
             if (segment < t && t < segment + 1)
               move(v, curve.at(t));
     }
@@ -263,8 +263,7 @@ std::vector<Index> conflicts(const Outline &outline) {
         clashes = clashes || is_on(x(two.v0), x(two.v1), x(mine)) ||
                   is_on(x(one.v0), x(one.v1), x(other));
       } else {
-        clashes =
-            clashes || segments_meet(x(one.v0), x(one.v1), x(two.v0), x(two.v1));
+        clashes = clashes || segments_meet(x(one.v0), x(one.v1), x(two.v0), x(two.v1));
       }
       return !clashes;
     });

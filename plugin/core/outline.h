@@ -27,7 +27,8 @@ struct Outline {
 };
 
 /// Cuts every curve into edges of equal metric length near 1, none of which leaves the
-/// curve by more than `hausdorff` times its own length; frozen curves keep their points.
+/// curve by more than `hausdorff` times its own length; frozen curves keep their
+/// points.
 /// @throws MeshingError when the metric asks for more vertices than the monitor allows.
 [[nodiscard]] Outline make_outline(const Geometry &geometry,
                                    const Background<2> &background, double hausdorff,

@@ -104,8 +104,7 @@ int certain_sign(const Approximate &x) {
 bool exact_segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
                                 const Vector<2> &b, const Vector<2> &c,
                                 const Vector<2> &p, const Vector<2> &q) {
-  const Exact area =
-      determinant2(exact_difference<2>(b, a), exact_difference<2>(c, a));
+  const Exact area = determinant2(exact_difference<2>(b, a), exact_difference<2>(c, a));
   const Exact alpha = area * exact_square<2>(M, exact_difference<2>(q, p));
   const Exact gamma = -exact_sphere_determinant(M, a, b, c, p);
   const Exact beta = -exact_sphere_determinant(M, a, b, c, q) - gamma - alpha;
@@ -134,15 +133,15 @@ bool segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
                              2 * std::abs(M.entries[1] * r[0] * r[1]);
   const double area = cross(u, v);
   const double area_size = std::abs(u[0] * v[1]) + std::abs(u[1] * v[0]);
-  const Approximate alpha{area * square, detail::sphere_bound_2 * area_size *
-                                                 square_size +
-                                             detail::underflow_guard};
+  const Approximate alpha{area * square,
+                          detail::sphere_bound_2 * area_size * square_size +
+                              detail::underflow_guard};
   const double beta_value = end.value - gamma.value - alpha.value;
-  const Approximate beta{beta_value,
-                         end.error + gamma.error + alpha.error +
-                             4 * detail::round_off *
-                                 (std::abs(end.value) + std::abs(gamma.value) +
-                                  std::abs(alpha.value))};
+  const Approximate beta{
+      beta_value,
+      end.error + gamma.error + alpha.error +
+          4 * detail::round_off *
+              (std::abs(end.value) + std::abs(gamma.value) + std::abs(alpha.value))};
   const int falls = certain_sign(beta);
   if (falls == 1)
     return false;
@@ -154,9 +153,8 @@ bool segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
     return false;
   const double b2 = beta.value * beta.value, ac = 4 * alpha.value * gamma.value;
   const double b2_error = beta.error * (2 * std::abs(beta.value) + beta.error);
-  const double ac_error =
-      4 * (alpha.error * (std::abs(gamma.value) + gamma.error) +
-           std::abs(alpha.value) * gamma.error);
+  const double ac_error = 4 * (alpha.error * (std::abs(gamma.value) + gamma.error) +
+                               std::abs(alpha.value) * gamma.error);
   const int dips = certain_sign(
       {b2 - ac, b2_error + ac_error + 4 * detail::round_off * (b2 + std::abs(ac))});
   if (dips == -1)

@@ -132,8 +132,8 @@ struct Estimate {
   return detail::exact_in_sphere(M, a, b, c, p);
 }
 
-/// Whether the open segment pq meets the open circumscribed ellipse of abc in the metric
-/// M. @pre a, b, c turn left, and neither p nor q lies inside.
+/// Whether the open segment pq meets the open circumscribed ellipse of abc in the
+/// metric M. @pre a, b, c turn left, and neither p nor q lies inside.
 [[nodiscard]] bool segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
                                         const Vector<2> &b, const Vector<2> &c,
                                         const Vector<2> &p, const Vector<2> &q);

@@ -25,7 +25,8 @@ struct Circle {
   double radius;
 };
 
-/// Circumcircle in the mean of the three metrics, whose density is their geometric mean.
+/// Circumcircle in the mean of the three metrics, whose density is their geometric
+/// mean.
 std::optional<Circle> circumcircle(const Vertex<2> &a, const Vertex<2> &b,
                                    const Vertex<2> &c) {
   SymmetricTensor<2> M = a.weight * a.M + b.weight * b.M + c.weight * c.M;
@@ -54,8 +55,7 @@ public:
     for (std::size_t c = 0; c < w_.mesh.cells.size(); ++c)
       push(static_cast<Index>(c));
     Index cell = none;
-    while ((cell = pop()) != none &&
-           monitor_.keep_going(w_.mesh.vertices.size(), 0))
+    while ((cell = pop()) != none && monitor_.keep_going(w_.mesh.vertices.size(), 0))
       treat(cell);
     return counts_;
   }
@@ -192,8 +192,7 @@ private:
     };
     for (std::size_t i = 0; i < 3; ++i) {
       const HalfFacet beyond = w_.mesh.opposite(HalfFacet(cell, i));
-      if (near(w_.mesh.at(cell)[i]) ||
-          (beyond.exists() && near(w_.mesh.apex(beyond))))
+      if (near(w_.mesh.at(cell)[i]) || (beyond.exists() && near(w_.mesh.apex(beyond))))
         return true;
     }
     return false;

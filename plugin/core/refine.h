@@ -8,9 +8,9 @@
 namespace anistar {
 
 struct RefineCounts {
-  std::size_t inserted = 0;       ///< circumcentres
+  std::size_t inserted = 0; ///< circumcentres
   std::size_t boundary_splits = 0;
-  std::size_t rejected = 0;       ///< too near to a vertex or a constraint
+  std::size_t rejected = 0; ///< too near to a vertex or a constraint
 };
 
 /// Inserts circumcentres until no cell has a circumradius above the target. It ends

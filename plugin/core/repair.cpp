@@ -111,8 +111,8 @@ private:
   bool collapse(Index v, Index target) {
     collapse_.vertex = v;
     collapse_.target = target;
-    if (!bound_collapse(w_, collapse_) || !score_after(mesh_.vertex(target))
-                                               .improves(score_of(w_.cavity.cells())))
+    if (!bound_collapse(w_, collapse_) ||
+        !score_after(mesh_.vertex(target)).improves(score_of(w_.cavity.cells())))
       return false;
     fill_collapse(w_, collapse_);
     return true;
@@ -126,8 +126,8 @@ private:
       return false;
     const auto [a, b] = mesh_.facet(edge);
     Index hint = mesh_.background_cell[static_cast<std::size_t>(a)];
-    const Vertex<2> middle = w_.background.vertex(
-        .5 * (mesh_.vertex(a).x + mesh_.vertex(b).x), hint);
+    const Vertex<2> middle =
+        w_.background.vertex(.5 * (mesh_.vertex(a).x + mesh_.vertex(b).x), hint);
     w_.cavity.clear();
     w_.cavity.add(edge.cell());
     w_.cavity.add(other.cell());

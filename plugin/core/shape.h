@@ -13,9 +13,9 @@ enum class Target {
   odt         ///< optimal Delaunay triangulation: the mean of the circumcentres
 };
 
-/// One sweep over all vertices in order: each moves towards its target as far as its star
-/// stays valid, takes the metric of its new place, and its edges are legalised. Vertices
-/// on a curve slide along it.
+/// One sweep over all vertices in order: each moves towards its target as far as its
+/// star stays valid, takes the metric of its new place, and its edges are legalised.
+/// Vertices on a curve slide along it.
 void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target);
 
 struct LengthCounts {
@@ -27,8 +27,9 @@ struct LengthCounts {
 LengthCounts control_lengths(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                              double shortest, double longest);
 
-/// Raises the worst cells: around every cell below `floor` swaps, moves, collapses and splits that raise the
-/// minimum quality, for a few rounds. @returns the number of cells below it when the last round met them.
+/// Raises the worst cells: around every cell below `floor` swaps, moves, collapses and
+/// splits that raise the minimum quality, for a few rounds. @returns the number of
+/// cells below it when the last round met them.
 std::size_t repair(Workspace &w, Monitor &monitor, double floor);
 
 } // namespace anistar

@@ -67,8 +67,8 @@ private:
     const double before = edge_length(w_.mesh.vertex(on.in().v0), here);
     const double after = edge_length(here, w_.mesh.vertex(on.out().v1));
     const double shift = .5 * (after - before);
-    double dt = shift > 0 ? shift / after * on.room_after()
-                          : shift / before * on.room_before();
+    double dt =
+        shift > 0 ? shift / after * on.room_after() : shift / before * on.room_before();
     dt = std::clamp(dt, -.4 * on.room_before(), .4 * on.room_after());
     for (int halving = 0; halving < max_halvings && dt != 0; ++halving, dt *= .5)
       if (on.may_slide(dt) && may_move(w_.mesh, here.x, on.at(dt), star_)) {

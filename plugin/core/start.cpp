@@ -137,8 +137,7 @@ void resolve_conflicts(Geometry &geometry, const Background<2> &background,
     if (clashing.empty())
       return;
     if (!retreat(geometry, background, outline, clashing)) {
-      const CurveEdge &edge =
-          outline.edges[static_cast<std::size_t>(clashing.front())];
+      const CurveEdge &edge = outline.edges[static_cast<std::size_t>(clashing.front())];
       const Vector<2> x = outline.vertices[static_cast<std::size_t>(edge.v0)].x;
       throw MeshingError("the facets of the geometry cross near (" +
                          std::to_string(x[0]) + ", " + std::to_string(x[1]) + ")");

@@ -17,8 +17,7 @@ struct MeshOnCurves {
 /// The outline retreats to the polyline of the geometry where its chords cross or leave
 /// a region on the wrong side, so that a valid geometry always has a start.
 /// @throws MeshingError when the geometry itself crosses.
-[[nodiscard]] MeshOnCurves triangulate(Geometry &geometry,
-                                       const Background<2> &background,
-                                       Outline outline);
+[[nodiscard]] MeshOnCurves
+triangulate(Geometry &geometry, const Background<2> &background, Outline outline);
 
 } // namespace anistar

@@ -2,7 +2,8 @@
 
 namespace anistar {
 
-Statistics measure(std::span<const Vertex<2>> vertices, std::span<const Cell<2>> cells) {
+Statistics measure(std::span<const Vertex<2>> vertices,
+                   std::span<const Cell<2>> cells) {
   Statistics out;
   const std::span bins(Statistics::length_bins);
   out.length_histogram.assign(bins.size() + 1, 0);

@@ -9,7 +9,8 @@
 namespace anistar {
 
 struct Statistics {
-  /// Bounds of the bins of `length_histogram`: below the first, between, above the last.
+  /// Bounds of the bins of `length_histogram`: below the first, between, above the
+  /// last.
   static constexpr double length_bins[] = {.25, .5,  shortest_unit, .8, .9,
                                            1.1, 1.2, longest_unit,  2,  4};
   static constexpr std::size_t n_quality_bins = 10; ///< of equal width over [0, 1]

@@ -78,7 +78,8 @@ template <std::size_t d>
 
 /// M v.
 template <std::size_t d>
-[[nodiscard]] inline Vector<d> product(const SymmetricTensor<d> &M, const Vector<d> &v) {
+[[nodiscard]] inline Vector<d> product(const SymmetricTensor<d> &M,
+                                       const Vector<d> &v) {
   Vector<d> out;
   for (std::size_t i = 0; i < d; ++i) {
     double sum = 0;

@@ -135,6 +135,17 @@ def test_the_round_limit_stops_the_queue_and_is_told(caplog, monkeypatch):
     assert "gradation stopped after 2 rounds" in caplog.text
 
 
+def test_needles_that_no_determinant_can_see_are_graded_all_the_same():
+    mesh = box(4, 3)
+    rng = np.random.default_rng(0)
+    vectors = np.linalg.qr(rng.normal(size=(len(mesh.points), 3, 3)))[0]
+    values = np.tile([1e12, 1.0, 1e-1], (len(vectors), 1))
+    M = np.einsum("nij,nj,nkj->nik", vectors, values, vectors)
+    graded = metric.graded(mesh, M, factor=1.5)
+    assert is_at_least(graded, M, 1e-3)
+    assert np.linalg.eigvalsh(graded)[:, 0].min() > 0.1
+
+
 def test_none_means_off():
     mesh = box(4, 2)
     M = layer_metric(mesh)

@@ -128,6 +128,8 @@ def test_bad_fields_are_named():
         from_fields(mesh, u, options)
     with pytest.raises(ValueError, match=r"'p' has shape \(24,\) but the mesh has 25 points"):
         from_fields(mesh, {"u": u, "p": u[1:]}, options)
+    with pytest.raises(ValueError, match=r"'T' has shape \(25, 2, 2\): not a scalar or a vector"):
+        from_fields(mesh, {"T": metric.from_sizes(np.ones(25))}, options)
     u[7] = np.nan
     with pytest.raises(ValueError, match="field 'u' at point 7 is not finite: nan"):
         from_fields(mesh, {"u": u}, options)

@@ -18,8 +18,8 @@ template <class T> using Array3 = Input<T, nb::shape<-1, -1, -1>>;
 
 /// Hands `values` over to NumPy as an array of the given shape, without copy.
 template <class T>
-[[nodiscard]] nb::ndarray<nb::numpy, T> owned(std::vector<T> &&values,
-                                              std::initializer_list<std::size_t> shape) {
+[[nodiscard]] nb::ndarray<nb::numpy, T>
+owned(std::vector<T> &&values, std::initializer_list<std::size_t> shape) {
   auto *kept = new std::vector<T>(std::move(values));
   nb::capsule owner(kept,
                     [](void *p) noexcept { delete static_cast<std::vector<T> *>(p); });

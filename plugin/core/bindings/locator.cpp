@@ -29,7 +29,8 @@ template <std::size_t d> void bind_dimension(nb::module_ &module, const char *na
                 cells[k] = found[k].cell;
                 distance[k] = found[k].distance;
                 std::copy(found[k].barycentric.begin(), found[k].barycentric.end(),
-                          barycentric.begin() + static_cast<std::ptrdiff_t>(k * (d + 1)));
+                          barycentric.begin() +
+                              static_cast<std::ptrdiff_t>(k * (d + 1)));
               }
             }
             return std::make_tuple(owned(std::move(cells), {x.size()}),
@@ -37,7 +38,8 @@ template <std::size_t d> void bind_dimension(nb::module_ &module, const char *na
                                    owned(std::move(distance), {x.size()}));
           },
           nb::arg("queries").noconvert(),
-          "Cell, barycentric coordinates and distance of the mesh point nearest to each "
+          "Cell, barycentric coordinates and distance of the mesh point nearest to "
+          "each "
           "query.");
 }
 

@@ -70,20 +70,16 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
                  const Array2<Index> &geometry_cells,
                  const Array1<Index> &geometry_cell_tags,
                  const Array2<Index> &geometry_facets,
-                 const Array1<Index> &geometry_facet_tags,
-                 const Array1<Index> &corners, const Array1<Index> &frozen_tags,
-                 double ridge_angle, double hausdorff_number, std::size_t max_vertices,
-                 double max_seconds, const nb::object &project,
-                 const nb::object &callback) {
+                 const Array1<Index> &geometry_facet_tags, const Array1<Index> &corners,
+                 const Array1<Index> &frozen_tags, double ridge_angle,
+                 double hausdorff_number, std::size_t max_vertices, double max_seconds,
+                 const nb::object &project, const nb::object &callback) {
   const auto tensors = tensors_of<2>(metric);
-  const GeometryInput geometry{points_of<2>(geometry_points),
-                               cells_of<2>(geometry_cells),
-                               indices_of(geometry_cell_tags),
-                               facets_of<2>(geometry_facets),
-                               indices_of(geometry_facet_tags),
-                               indices_of(corners),
-                               indices_of(frozen_tags),
-                               ridge_angle};
+  const GeometryInput geometry{
+      points_of<2>(geometry_points),   cells_of<2>(geometry_cells),
+      indices_of(geometry_cell_tags),  facets_of<2>(geometry_facets),
+      indices_of(geometry_facet_tags), indices_of(corners),
+      indices_of(frozen_tags),         ridge_angle};
   RemeshSettings settings;
   settings.hausdorff_number = hausdorff_number;
   settings.max_vertices = max_vertices;
@@ -112,19 +108,17 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
 
 void bind_remesh(nb::module_ &module) {
   nb::exception<MeshingError>(module, "MeshingError", PyExc_RuntimeError);
-  module.def("remesh2", &remesh2, nb::arg("points").noconvert(),
-             nb::arg("cells").noconvert(), nb::arg("metric").noconvert(),
-             nb::arg("geometry_points").noconvert(),
-             nb::arg("geometry_cells").noconvert(),
-             nb::arg("geometry_cell_tags").noconvert(),
-             nb::arg("geometry_facets").noconvert(),
-             nb::arg("geometry_facet_tags").noconvert(),
-             nb::arg("corners").noconvert(), nb::arg("frozen_tags").noconvert(),
-             nb::arg("ridge_angle"), nb::arg("hausdorff_number"),
-             nb::arg("max_vertices"), nb::arg("max_seconds"),
-             nb::arg("project").none(), nb::arg("callback").none(),
-             "A mesh of the geometry with unit edges in the metric that the mesh "
-             "(points, cells) carries.");
+  module.def(
+      "remesh2", &remesh2, nb::arg("points").noconvert(), nb::arg("cells").noconvert(),
+      nb::arg("metric").noconvert(), nb::arg("geometry_points").noconvert(),
+      nb::arg("geometry_cells").noconvert(), nb::arg("geometry_cell_tags").noconvert(),
+      nb::arg("geometry_facets").noconvert(),
+      nb::arg("geometry_facet_tags").noconvert(), nb::arg("corners").noconvert(),
+      nb::arg("frozen_tags").noconvert(), nb::arg("ridge_angle"),
+      nb::arg("hausdorff_number"), nb::arg("max_vertices"), nb::arg("max_seconds"),
+      nb::arg("project").none(), nb::arg("callback").none(),
+      "A mesh of the geometry with unit edges in the metric that the mesh "
+      "(points, cells) carries.");
 }
 
 } // namespace anistar::bindings

@@ -1,0 +1,71 @@
+# Every target sets up what it needs first; that takes a moment only when something changed.
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lint types stubs check-stubs format docs sanitize fuzz bench clean
+
+PYTHON := .venv/bin/python
+PYTEST_ARGS ?= -n auto --dist loadfile
+CXX_SOURCES = $(shell find plugin/core -name '*.cpp' -o -name '*.h')
+PYTHON_PATHS := metric plugin tests $(wildcard solver_examples) docs
+
+help: ## Show this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
+	  awk -F'|' '{ printf "  make %-12s %s\n", $$1, $$2 }'
+
+setup: ## Install what is missing and build the package into .venv
+	@./bootstrap.sh
+
+demo: setup ## Adapt a channel flow and leave pictures, meshes and a report in anistar-demo/
+	@.venv/bin/anistar demo
+
+test: setup ## Run the tests
+	@$(PYTHON) -m pytest $(PYTEST_ARGS)
+
+lint: setup ## Check layout and spelling, Python and C++
+	@$(PYTHON) -m ruff check .
+	@$(PYTHON) -m ruff format --check .
+	@.venv/bin/clang-format --dry-run --Werror $(CXX_SOURCES)
+	@.venv/bin/codespell
+
+types: setup check-stubs ## Check the types of the installed package
+	@$(PYTHON) -m mypy --package anistar
+
+stubs: setup ## Write the stub of the compiled module anew
+	@$(PYTHON) -m nanobind.stubgen -q -m anistar._core -o plugin/anistar/_core.pyi
+
+check-stubs: setup
+	@$(PYTHON) -m nanobind.stubgen -q -m anistar._core -o build/_core.pyi
+	@diff -u plugin/anistar/_core.pyi build/_core.pyi || \
+	  { echo "the stub of the compiled module is out of date: make stubs"; exit 1; }
+
+format: setup ## Lay out the sources
+	@$(PYTHON) -m ruff check --fix .
+	@$(PYTHON) -m ruff format .
+	@.venv/bin/clang-format -i $(CXX_SOURCES)
+
+docs: ## Build the documentation into docs/_build/html
+	@./bootstrap.sh docs
+	@$(PYTHON) -m sphinx -W --keep-going -q -b html docs docs/_build/html
+	@echo "docs/_build/html/index.html"
+
+# The sanitized build goes beside the ordinary one. Python itself is not instrumented: the
+# run-time libraries are loaded first, and leaks, of which the interpreter is full, not counted.
+SANITIZED := build/sanitize
+sanitize: setup ## Run the tests with the address and undefined-behaviour sanitizers
+	@$(PYTHON) -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
+	  --upgrade --target $(SANITIZED)/site --config-settings build-dir=$(SANITIZED)/cmake \
+	  --config-settings cmake.build-type=Debug --config-settings cmake.define.ANISTAR_SANITIZE=ON .
+	@PYTHONPATH=$(SANITIZED)/site ASAN_OPTIONS=detect_leaks=0 \
+	  UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
+	  LD_PRELOAD="$$(c++ -print-file-name=libasan.so) $$(c++ -print-file-name=libubsan.so)" \
+	  $(PYTHON) -m pytest -p no:cacheprovider -q
+
+fuzz: setup ## Run the property tests with many more and random examples
+	@$(PYTHON) -m pytest --hypothesis-profile=fuzz $(PYTEST_ARGS)
+
+bench: ## Measure against other programs and print a table
+	@./bootstrap.sh bench
+	@$(PYTHON) tests/benchmarks/run.py
+
+clean: ## Remove everything that these commands made
+	@rm -rf .venv build dist docs/_build docs/api/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +

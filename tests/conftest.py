@@ -1,0 +1,14 @@
+"""Settings that every test runs with."""
+
+from hypothesis import HealthCheck, settings
+
+# The same examples in every run: a test that fails here fails for everyone.
+settings.register_profile(
+    "repeatable",
+    derandomize=True,
+    deadline=None,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.register_profile("fuzz", derandomize=False, deadline=None, max_examples=2000)
+settings.load_profile("repeatable")

@@ -1,0 +1,164 @@
+"""The folder list is the architecture, and imports point one way."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "plugin" / "anistar"
+CORE = ROOT / "plugin" / "core"
+
+FOLDERS = {"docs", "metric", "plugin", "requirements", "solver_examples", "tests"}
+MADE_BY_COMMANDS = {"anistar-demo", "build", "dist"}
+
+# The demo is an example that ships inside the package; it solves with scikit-fem.
+DEMO_PROBLEM = "anistar.demo_problem"
+
+
+def module_name(path, folder, package):
+    parts = path.relative_to(folder).with_suffix("").parts
+    return ".".join([package, *(part for part in parts if part != "__init__")])
+
+
+def sources():
+    """Every module of the import package, by name; `metric/` is `anistar.metric`."""
+    found = {
+        module_name(path, ROOT / "metric", "anistar.metric"): path
+        for path in modules(ROOT / "metric")
+    }
+    inside = (path for path in modules(PACKAGE) if path.relative_to(PACKAGE).parts[0] != "metric")
+    return found | {module_name(path, PACKAGE, "anistar"): path for path in inside}
+
+
+def modules(folder):
+    return sorted(folder.rglob("*.py"))
+
+
+def imports(name, path):
+    """Absolute names of what a module imports, of functions and names as well as of modules."""
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(), str(path))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found |= imported_from(node, package)
+    return found
+
+
+def imported_from(node, package):
+    base = node.module or ""
+    if node.level:
+        above = package.split(".")[: len(package.split(".")) - node.level + 1]
+        base = ".".join([*above, base] if base else above)
+    return {f"{base}.{alias.name}" for alias in node.names}
+
+
+def is_within(name, package):
+    return name == package or name.startswith(package + ".")
+
+
+ALL = {name: imports(name, path) for name, path in sources().items()}
+
+
+def importers_of(package, among):
+    return sorted(name for name in among if any(is_within(other, package) for other in ALL[name]))
+
+
+def test_top_level_folders_are_the_fixed_ones():
+    found = {path.name for path in ROOT.iterdir() if path.is_dir() and path.name[0] != "."}
+    assert found - MADE_BY_COMMANDS - {"__pycache__", "shared"} <= FOLDERS
+
+
+def test_plugin_holds_the_package_and_the_core_only():
+    assert {path.name for path in (ROOT / "plugin").iterdir()} - {"__pycache__"} == {
+        "anistar",
+        "core",
+    }
+
+
+def test_the_metric_package_is_a_leaf_except_that_kernels_may_use_the_core():
+    outside = {
+        name: [
+            other
+            for other in ALL[name]
+            if is_within(other, "anistar") and not is_within(other, "anistar.metric")
+        ]
+        for name in ALL
+        if is_within(name, "anistar.metric")
+    }
+    allowed = outside.pop("anistar.metric.kernels", [])
+    assert all(is_within(name, "anistar._core") for name in allowed)
+    assert {name: other for name, other in outside.items() if other} == {}
+
+
+def test_the_metric_package_needs_numpy_and_scipy_only():
+    allowed = {"anistar", "numpy", "scipy", "__future__"}
+    for name in ALL:
+        if is_within(name, "anistar.metric"):
+            roots = {other.partition(".")[0] for other in ALL[name]}
+            third_party = {root for root in roots - allowed if not is_standard(root)}
+            assert not third_party, f"{name} imports {third_party}"
+
+
+def is_standard(root):
+    import sys
+
+    return root in sys.stdlib_module_names
+
+
+def test_only_adapters_and_the_demo_problem_import_adapters():
+    library = [name for name in ALL if not is_within(name, "anistar.adapters")]
+    assert set(importers_of("anistar.adapters", library)) <= {DEMO_PROBLEM}
+
+
+def test_importing_anistar_does_not_import_the_demo():
+    reached, waiting = set(), ["anistar"]
+    while waiting:
+        name = waiting.pop()
+        if name in reached or name not in ALL:
+            continue
+        reached.add(name)
+        for other in ALL[name]:
+            waiting += [other, other.rpartition(".")[0]]
+    assert "anistar.metric" in reached
+    assert DEMO_PROBLEM not in reached
+
+
+@pytest.mark.parametrize("package", ["solver_examples", "tests"])
+def test_the_package_never_imports_examples_or_tests(package):
+    assert importers_of(package, ALL) == []
+
+
+def test_modules_of_the_package_import_each_other_relatively():
+    absolute = {
+        name
+        for name, path in sources().items()
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ImportFrom)
+        and node.level == 0
+        and is_within(node.module, "anistar")
+    }
+    assert absolute == set()
+
+
+def including(pattern):
+    """Sources of the core with an include that matches."""
+    line = re.compile(rf'^\s*#\s*include\s*[<"]({pattern})', re.MULTILINE)
+    files = [*CORE.rglob("*.cpp"), *CORE.rglob("*.h")]
+    assert files
+    return [path.relative_to(CORE) for path in files if line.search(path.read_text())]
+
+
+def test_only_the_bindings_know_python():
+    found = including(r"nanobind/|Python\.h|numpy/|bindings/")
+    assert found
+    assert {path.parts[0] for path in found} == {"bindings"}
+
+
+def test_cgal_stays_in_source_files_of_the_core():
+    found = including("CGAL/")
+    assert [str(path) for path in found if path.suffix != ".cpp"] == []
+    assert [str(path) for path in found if path.parts[0] == "bindings"] == []
