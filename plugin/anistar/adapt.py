@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .aliases import canonical
+from .aliases import STAGES, canonical
 from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import MetricOptions, from_fields
@@ -82,19 +82,16 @@ class AdaptOptions:
         ValueError
             If a name is unknown or given twice.
         """
-        stages: dict[str, Any] = {
-            "metric": MetricOptions,
-            "remesh": RemeshOptions,
-            "transfer": TransferOptions,
+        defaults = cls()
+        owners = {
+            item.name: stage for stage in STAGES for item in fields_of(getattr(defaults, stage))
         }
-        owners = {item.name: stage for stage in stages for item in fields_of(stages[stage])}
-        chosen: dict[str, dict[str, Any]] = {stage: {} for stage in stages}
-        chosen["transfer"] = {"outside": "nearest"}
+        chosen: dict[str, dict[str, Any]] = {stage: {} for stage in STAGES}
         known = canonical(options, (*owners, "metric_fields"))
         names = known.pop("metric_fields", None)
         for name, value in known.items():
             chosen[owners[name]][name] = value
-        made = {stage: build(**chosen[stage]) for stage, build in stages.items()}
+        made = {stage: replace(getattr(defaults, stage), **chosen[stage]) for stage in STAGES}
         return cls(**made, metric_fields=names)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -59,7 +59,7 @@ class LoopOptions:
     """
 
     adapt: AdaptOptions = field(default_factory=AdaptOptions)
-    complexities: tuple[float, ...] | None = None
+    complexities: Sequence[float] | None = None
     target_error: float | None = None
     qoi: Quantity | None = None
     rtol: float | None = None
@@ -240,7 +240,17 @@ def _solved(solve: Solve, state: _State, options: LoopOptions) -> Step:
     qoi = None if options.qoi is None else float(options.qoi(state.mesh, dict(fields)))
     names = metric_field_names(checked, options.adapt.metric_fields)
     error = {name: _estimated(state.mesh, checked[name].values) for name in names}
-    return Step(*state[:3], dict(fields), state.metric, state.report, qoi, error, seconds)
+    return Step(
+        iteration=state.iteration,
+        complexity=state.complexity,
+        mesh=state.mesh,
+        fields=dict(fields),
+        metric=state.metric,
+        report=state.report,
+        qoi=qoi,
+        error=error,
+        seconds=seconds,
+    )
 
 
 def _adapted(

@@ -29,6 +29,19 @@ def test_the_estimate_is_exact_for_a_quadratic_in_three_dimensions():
     assert interpolation_error(mesh, values) == pytest.approx(l2_error(mesh, values, u), rel=1e-6)
 
 
+@pytest.mark.parametrize("exponent", [-1000, -3, 1000])
+def test_scaling_by_a_power_of_two_scales_the_estimate_exactly(exponent):
+    mesh = rectangle_with_jitter(5)
+    u = np.sin(3 * mesh.points[:, 0])
+    estimate = interpolation_error(mesh, u)
+    assert interpolation_error(mesh, u * 2.0**exponent) == estimate * 2.0**exponent
+
+
+def test_zero_has_no_error():
+    mesh = square(3)
+    assert interpolation_error(mesh, np.zeros(mesh.n_points)) == 0.0
+
+
 def test_linear_functions_have_no_error():
     mesh = square(5)
     assert interpolation_error(mesh, mesh.points @ [2.0, -1.0]) < 1e-10

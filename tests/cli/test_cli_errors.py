@@ -1,3 +1,4 @@
+import json
 import sys
 
 import numpy as np
@@ -10,6 +11,17 @@ from anistar.formats import read, write, write_metric
 
 def run(words, *more):
     return main([*words.split(), *more])
+
+
+# A medit solution of 25 points for the first mesh, written without any library.
+SECOND_CALL_FAILS = """
+import sys
+if "step_001" in sys.argv[1]:
+    sys.exit("diverged")
+values = "\\n".join(str(k * k) for k in range(25))
+with open(sys.argv[2], "w") as stream:
+    stream.write(f"MeshVersionFormatted 2 Dimension 2 SolAtVertices 25 1 1 {values} End")
+"""
 
 
 @pytest.fixture
@@ -98,6 +110,27 @@ def test_a_failing_solver_ends_with_1_and_its_last_words(folder, capsys):
     assert run(words, "--command", command) == 1
     said = capsys.readouterr().err
     assert "iteration 0: the solver ended with code 1: matrix is singular" in said
+
+
+def test_what_a_loop_finished_before_it_failed_is_kept(folder, capsys):
+    (folder / "solver.py").write_text(SECOND_CALL_FAILS)
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    words = "loop in.vtu --complexities 50,60 -o run"
+    assert run(words, "--command", command) == 1
+    assert "iteration 1: the solver ended with code 1: diverged" in capsys.readouterr().err
+    report = json.loads((folder / "run" / "report.json").read_text())
+    assert report["stop_reason"].startswith("iteration 1: the solver ended")
+    assert len(report["steps"]) == 1
+    assert read(folder / "run" / "series_000.vtu")[0].n_points == 25
+
+
+def test_an_interrupt_is_one_line_too(folder, capsys, monkeypatch):
+    def interrupted(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("anistar.cli.convert.write", interrupted)
+    assert run("convert in.vtu o.vtu") == 1
+    assert capsys.readouterr().err == "anistar convert: interrupted\n"
 
 
 def test_a_solver_that_writes_nothing_is_said(folder, capsys):

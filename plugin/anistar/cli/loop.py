@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..file_solver import FILE_KINDS, FileSolver
 from ..formats import read
-from ..loop import Loop, LoopOptions, Step, adapt_loop
+from ..loop import Loop, LoopError, LoopOptions, Step, adapt_loop
 from ..report import write_json
 from ..series import write_series
 from . import console
@@ -58,18 +58,25 @@ def run(arguments: argparse.Namespace) -> int:
         def moved(step: Step) -> None:
             advance(f"{step.mesh.n_points} points")
 
-        loop = adapt_loop(solve, mesh, options, callback=moved)
-    write_series(folder / "series.pvd", ((step.mesh, step.fields) for step in loop.steps))
-    write_json(folder / "report.json", loop)
+        try:
+            loop = adapt_loop(solve, mesh, options, callback=moved)
+        except LoopError as error:
+            _write(folder, error.loop)
+            raise
+    _write(folder, loop)
     if arguments.json:
         console.show_json(loop)
     else:
-        show(loop)
+        _show(loop)
     return 0
 
 
-def show(loop: Loop) -> None:
-    """Print one row for each step."""
+def _write(folder: Path, loop: Loop) -> None:
+    write_series(folder / "series.pvd", ((step.mesh, step.fields) for step in loop.steps))
+    write_json(folder / "report.json", loop)
+
+
+def _show(loop: Loop) -> None:
     rows = [
         [step.iteration, step.complexity, step.mesh.n_points, max(step.error.values())]
         for step in loop.steps

@@ -74,6 +74,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return int(stop.code or 0)
     try:
         return int(arguments.run(arguments))
+    except KeyboardInterrupt:
+        print(f"anistar {arguments.command}: interrupted", file=sys.stderr)
+        return FAILED
     except Exception as error:
         if arguments.debug:
             traceback.print_exc()

@@ -26,6 +26,10 @@ def _number_or_off(name: str) -> Any:
     return parsed
 
 
+def _integers(text: str) -> tuple[int, ...]:
+    return tuple(int(part) for part in text.split(",") if part)
+
+
 _METRIC: dict[str, tuple[Any, str]] = {
     "target_complexity": (
         float,
@@ -51,8 +55,7 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "ridge_angle": (float, "angle in degrees from which a corner is kept (Mmg: -ar)"),
     "max_vertices": (int, "stop at this number of vertices"),
     "max_seconds": (float, "stop after this time"),
-    "seed": (int, "seed of the random numbers"),
-    "threads": (int, "number of threads"),
+    "frozen_tags": (_integers, "facet tags that are kept as they are, comma-separated"),
 }
 
 
