@@ -64,7 +64,7 @@ fuzz: setup ## Run the property tests with many more and random examples
 
 bench: ## Measure against other programs and print a table
 	@./bootstrap.sh bench
-	@$(PYTHON) tests/benchmarks/run.py
+	@$(PYTHON) tests/benchmarks/run_cases.py
 
 clean: ## Remove everything that these commands made
 	@rm -rf .venv build dist docs/_build docs/api/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -25,7 +25,7 @@ fail() {
 missing_debian_packages() {
   local package
   for package in "${DEBIAN_PACKAGES[@]}"; do
-    dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null |
+    dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2>/dev/null |
       grep -qx installed || printf '%s\n' "$package"
   done
 }

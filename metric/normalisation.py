@@ -28,7 +28,7 @@ def normalised(
     p: float = 2.0,
     h_max: float | Array | None = None,
 ) -> Array:
-    """Scale |H| to the metric that is optimal in the Lp norm at `target_complexity` [1]_.
+    """Scale ``|H|`` to the metric that is optimal in the Lp norm at `target_complexity` [1]_.
 
     ``M = C^(2/d) (int det|H|^(p/(2p+d)))^(-2/d) det|H|^(-1/(2p+d)) |H|``. A change of the
     unit of the field does not change it.
@@ -44,7 +44,7 @@ def normalised(
     p : float
         Norm of the interpolation error to minimise, from 1 to infinity.
     h_max : float or ndarray (n,), optional
-        Size of featureless regions: eigenvalues of |H| are floored where the result would ask
+        Size of featureless regions: eigenvalues of ``|H|`` are floored where the result would ask
         for larger sizes in all directions. The diagonal of the mesh's bounding box if None.
 
     Returns

@@ -5,7 +5,7 @@ from .adapt import Adapted, AdaptOptions, adapt
 from .errors import FormatError, MeshingError
 from .fields import Field
 from .formats import read, write
-from .loop import Loop, LoopOptions, adapt_loop
+from .loop import Loop, LoopError, LoopOptions, Step, adapt_loop
 from .mesh import Mesh
 from .metric import MetricError, MetricOptions
 from .remesh import Remeshed, RemeshOptions, remesh
@@ -19,6 +19,7 @@ __all__ = [
     "Field",
     "FormatError",
     "Loop",
+    "LoopError",
     "LoopOptions",
     "Mesh",
     "MeshingError",
@@ -26,6 +27,7 @@ __all__ = [
     "MetricOptions",
     "RemeshOptions",
     "Remeshed",
+    "Step",
     "Study",
     "TransferOptions",
     "Transferred",

@@ -204,7 +204,8 @@ private:
   /// Random moves that do not raise the count, to leave local minima.
   void walk_on_plateau() {
     // four vertices are listed for an edge
-    const double few = 4 * plateau_fraction * 1.5 * static_cast<double>(mesh_.n_cells());
+    const double few =
+        4 * plateau_fraction * 1.5 * static_cast<double>(mesh_.n_cells());
     for (int round = 0; round < max_plateau_rounds; ++round) {
       if (work_.size() == 0 || static_cast<double>(work_.size()) > few)
         return;
@@ -252,8 +253,8 @@ private:
     }
   }
 
-  /// Takes back what agreement cost in lengths: moves that bring edges nearer to one and
-  /// cause no new disagreement.
+  /// Takes back what agreement cost in lengths: moves that bring edges nearer to one
+  /// and cause no new disagreement.
   void polish() {
     for (int sweep = 0; sweep < max_polish_sweeps; ++sweep) {
       std::size_t moved = 0;
@@ -276,7 +277,8 @@ private:
     const EllipseSampler ellipse(from.vertex.M);
     CounterRandom random(seed_ + 1, static_cast<std::uint64_t>(v),
                          static_cast<std::uint64_t>(sweep));
-    const Vector<2> pliant = pliant_displacement(mesh_, from.vertex, relocation_.star());
+    const Vector<2> pliant =
+        pliant_displacement(mesh_, from.vertex, relocation_.star());
     Place best = from;
     double best_excess = before.excess - least_gain;
     for (int k = 0; k < n_polish_candidates; ++k) {

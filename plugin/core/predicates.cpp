@@ -121,15 +121,13 @@ bool segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
                              2 * std::abs(M.entries[1] * r[0] * r[1]);
   const double area = cross(u, v);
   const double area_size = std::abs(u[0] * v[1]) + std::abs(u[1] * v[0]);
-  const Power alpha{area * square,
-                          detail::sphere_bound_2 * area_size * square_size +
-                              detail::underflow_guard};
+  const Power alpha{area * square, detail::sphere_bound_2 * area_size * square_size +
+                                       detail::underflow_guard};
   const double beta_value = end.value - gamma.value - alpha.value;
-  const Power beta{
-      beta_value,
-      end.error + gamma.error + alpha.error +
-          4 * detail::round_off *
-              (std::abs(end.value) + std::abs(gamma.value) + std::abs(alpha.value))};
+  const Power beta{beta_value, end.error + gamma.error + alpha.error +
+                                   4 * detail::round_off *
+                                       (std::abs(end.value) + std::abs(gamma.value) +
+                                        std::abs(alpha.value))};
   const int falls = certain_sign(beta);
   if (falls == 1)
     return false;

@@ -132,8 +132,8 @@ struct Estimate {
   return detail::exact_in_sphere(M, a, b, c, p);
 }
 
-/// The power of a point with respect to the circumscribed ellipse of abc, times twice the
-/// area of abc, known up to an error: negative inside, exactly 0 at a, b and c.
+/// The power of a point with respect to the circumscribed ellipse of abc, times twice
+/// the area of abc, known up to an error: negative inside, exactly 0 at a, b and c.
 struct Power {
   double value = 0, error = 0;
 };
@@ -145,8 +145,8 @@ struct Power {
   return {-det.value, detail::sphere_bound_2 * det.size + detail::underflow_guard};
 }
 
-/// Whether the open segment pq meets the open circumscribed ellipse of abc in the metric
-/// M, given the powers of its ends.
+/// Whether the open segment pq meets the open circumscribed ellipse of abc in the
+/// metric M, given the powers of its ends.
 /// @pre a, b, c turn left, and neither p nor q lies inside.
 [[nodiscard]] bool segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
                                         const Vector<2> &b, const Vector<2> &c,

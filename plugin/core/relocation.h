@@ -16,7 +16,8 @@ struct StarScore {
   int disagreeing = 0; ///< edges of the star and of its link
   double quality = 1;
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-  double excess = 0; ///< sum over its edges of how far |ln length| is beyond a unit edge
+  double excess =
+      0; ///< sum over its edges of how far |ln length| is beyond a unit edge
 
   /// No worse than the bounds of a relocation, or than it was.
   [[nodiscard]] bool keeps(const StarScore &before) const;
