@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,6 +41,14 @@ class RemeshOptions:
         Facets with these tags are kept as they are.
     ridge_angle : float
         Degrees; the boundary has a corner where it turns by at least this.
+    agreement : bool or "auto"
+        Move vertices until the stars of the mesh agree, so that `certify` finds every star
+        Delaunay in its own metric. "auto" does so when the metric varies slowly enough from
+        vertex to vertex for that to succeed; ``report.agreement`` says what was decided.
+    seed : int
+        Of the random moves in the agreement phase.
+    threads : int
+        For the certificate; the result does not depend on it.
     hausdorff_number : float
         Distance of a curve from an edge along it, relative to the edge's length; longer edges
         are split whatever the metric says.
@@ -53,6 +61,9 @@ class RemeshOptions:
     frozen_tags: Sequence[int] = ()
     ridge_angle: float = 45.0
     hausdorff_number: float = 0.1
+    agreement: bool | Literal["auto"] = "auto"
+    seed: int = 0
+    threads: int = 1
     callback: Callback | None = None
 
     def __post_init__(self) -> None:
@@ -64,6 +75,12 @@ class RemeshOptions:
             raise ValueError(f"ridge_angle must be in (0, 180] degrees, got {self.ridge_angle}")
         if not 0 < self.hausdorff_number <= 1:
             raise ValueError(f"hausdorff_number must be in (0, 1], got {self.hausdorff_number}")
+        if not (isinstance(self.agreement, bool) or self.agreement == "auto"):
+            raise ValueError(f'agreement must be True, False or "auto", got {self.agreement!r}')
+        if not 0 <= self.seed < 2**64:
+            raise ValueError(f"seed must be in [0, 2**64), got {self.seed}")
+        if not 1 <= self.threads <= 256:
+            raise ValueError(f"threads must be in [1, 256], got {self.threads}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,6 +115,13 @@ class RemeshReport:
         ``edge_unit`` (fraction of edges within [1/sqrt 2, sqrt 2]), ``edge_min``, ``edge_mean``,
         ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
         ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
+    agreement : str
+        ``done``, ``off``, or ``skipped: `` and why.
+    simplex_ok, star_ok : float or None
+        Certified fractions of the cells and of the stars (see `certify`); None when the
+        agreement phase was off.
+    distortion : dict of str to float
+        Quantiles of ln gamma, the distortion of the metric along the edges.
     tags : tuple of TagMeasure
         Measure of every facet and region tag against the geometry.
     counts : dict of str to float
@@ -111,6 +135,10 @@ class RemeshReport:
     n_points: int
     n_cells: int
     statistics: dict[str, Any]
+    agreement: str
+    simplex_ok: float | None
+    star_ok: float | None
+    distortion: dict[str, float]
     tags: tuple[TagMeasure, ...]
     counts: dict[str, float]
     seconds: dict[str, float]
@@ -201,6 +229,9 @@ def remesh(
             options.hausdorff_number,
             UNLIMITED if options.max_vertices is None else options.max_vertices,
             np.inf if options.max_seconds is None else options.max_seconds,
+            {True: "on", False: "off", "auto": "auto"}[options.agreement],
+            options.seed,
+            options.threads,
             None if project is None else _pointwise(project),
             options.callback,
         )
@@ -221,6 +252,10 @@ def remesh(
         n_points=new.n_points,
         n_cells=new.n_cells,
         statistics=raw["statistics"],
+        agreement=raw["agreement"],
+        simplex_ok=raw["simplex_ok"],
+        star_ok=raw["star_ok"],
+        distortion=raw["distortion"],
         tags=_tag_measures(geometry, new),
         counts=raw["counts"],
         seconds=raw["seconds"],
