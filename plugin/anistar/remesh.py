@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 import numpy as np
@@ -28,6 +28,54 @@ UNLIMITED = 2**62
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ConsistencyOptions:
+    """Parameters of Algorithm 2, named as in Boissonnat, Wormser, Yvinec, RR-7712 v2.
+
+    Parameters
+    ----------
+    alpha_0 : float
+        Rule 1 refines a simplex whose circumradius is at least ``alpha_0 * sf``; the sizing
+        field sf is 1 in the metric, less where ``gamma_0`` asks for it. A unit equilateral
+        triangle has .577, so .95 leaves a quasi-unit mesh alone.
+    rho_0 : float
+        Rule 2: largest radius-edge ratio; above sqrt 2, the classical bound for termination.
+    sigma_0 : float
+        Rule 3: smallest sliverity. In 2D a triangle that passes rule 2 is never a sliver.
+    gamma_0 : float or None
+        Bound on the distortion within an element, through the sizing field. None, the
+        default, is off: measured, it only adds points.
+    delta : float
+        Radius of the picking region relative to the circumradius.
+    beta : float
+        New quasi-cospherical configurations count up to ``beta`` circumradii.
+    candidates : int
+        Points that pick_valid tries before it takes the best one.
+    max_growth : float
+        The run stops when it has added this fraction of vertices.
+    """
+
+    alpha_0: float = 0.95
+    rho_0: float = 1.5
+    sigma_0: float = 0.05
+    gamma_0: float | None = None
+    delta: float = 0.4
+    beta: float = 2.0
+    candidates: int = 16
+    max_growth: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("alpha_0", "rho_0", "sigma_0", "beta", "max_growth"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+        if not 0 < self.delta < 1:
+            raise ValueError(f"delta must be in (0, 1), got {self.delta}")
+        if self.gamma_0 is not None and not self.gamma_0 > 1:
+            raise ValueError(f"gamma_0 must be above 1, got {self.gamma_0}")
+        if self.candidates < 1:
+            raise ValueError(f"candidates must be at least 1, got {self.candidates}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RemeshOptions:
     """How to remesh; the metric itself is taken as it is given.
 
@@ -45,6 +93,12 @@ class RemeshOptions:
         Move vertices until the stars of the mesh agree, so that `certify` finds every star
         Delaunay in its own metric. "auto" does so when the metric varies slowly enough from
         vertex to vertex for that to succeed; ``report.agreement`` says what was decided.
+    until_consistent : bool or "pure"
+        After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
+        star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.
+        "pure" starts from the boundary alone and runs only that algorithm.
+    consistency : ConsistencyOptions
+        Its parameters.
     seed : int
         Of the random moves in the agreement phase.
     threads : int
@@ -62,6 +116,8 @@ class RemeshOptions:
     ridge_angle: float = 45.0
     hausdorff_number: float = 0.1
     agreement: bool | Literal["auto"] = "auto"
+    until_consistent: bool | Literal["pure"] = False
+    consistency: ConsistencyOptions = field(default_factory=ConsistencyOptions)
     seed: int = 0
     threads: int = 1
     callback: Callback | None = None
@@ -77,6 +133,10 @@ class RemeshOptions:
             raise ValueError(f"hausdorff_number must be in (0, 1], got {self.hausdorff_number}")
         if not (isinstance(self.agreement, bool) or self.agreement == "auto"):
             raise ValueError(f'agreement must be True, False or "auto", got {self.agreement!r}')
+        if not (isinstance(self.until_consistent, bool) or self.until_consistent == "pure"):
+            raise ValueError(
+                f'until_consistent must be True, False or "pure", got {self.until_consistent!r}'
+            )
         if not 0 <= self.seed < 2**64:
             raise ValueError(f"seed must be in [0, 2**64), got {self.seed}")
         if not 1 <= self.threads <= 256:
@@ -117,6 +177,9 @@ class RemeshReport:
         ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
     agreement : str
         ``done``, ``off``, or ``skipped: `` and why.
+    consistency : dict
+        Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
+        ``inconsistency``, ``boundary``), ``rounds`` and ``stop_reason``.
     simplex_ok, star_ok : float or None
         Certified fractions of the cells and of the stars (see `certify`); None when the
         agreement phase was off.
@@ -136,6 +199,7 @@ class RemeshReport:
     n_cells: int
     statistics: dict[str, Any]
     agreement: str
+    consistency: dict[str, Any]
     simplex_ok: float | None
     star_ok: float | None
     distortion: dict[str, float]
@@ -230,6 +294,8 @@ def remesh(
             UNLIMITED if options.max_vertices is None else options.max_vertices,
             np.inf if options.max_seconds is None else options.max_seconds,
             {True: "on", False: "off", "auto": "auto"}[options.agreement],
+            {True: "on", False: "off", "pure": "pure"}[options.until_consistent],
+            {**asdict(options.consistency), "gamma_0": options.consistency.gamma_0 or np.inf},
             options.seed,
             options.threads,
             None if project is None else _pointwise(project),
@@ -253,6 +319,7 @@ def remesh(
         n_cells=new.n_cells,
         statistics=raw["statistics"],
         agreement=raw["agreement"],
+        consistency=raw["consistency"],
         simplex_ok=raw["simplex_ok"],
         star_ok=raw["star_ok"],
         distortion=raw["distortion"],

@@ -68,14 +68,6 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor,
   counts["poor"] = static_cast<double>(repair(w, monitor, repair_floor));
 }
 
-void renumber(Workspace &w) {
-  const std::vector<Index> rank = sort_along_curve(w.mesh);
-  for (CurveEdge &edge : w.on_curves.curve_edges) {
-    edge.v0 = rank[static_cast<std::size_t>(edge.v0)];
-    edge.v1 = rank[static_cast<std::size_t>(edge.v1)];
-  }
-}
-
 /// Phases 4 and 5, as far as the metric and the settings let them.
 void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                    const RemeshSettings &settings, Stopwatch &watch,
@@ -83,11 +75,15 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
   watch.phase("agreement");
   out.distortion = distortion_quantiles(w.mesh.vertices, w.mesh.cells);
   const bool can_agree = out.distortion.p99 <= largest_agreeing_distortion;
-  if (settings.agreement == AgreementMode::off) {
+  const bool is_pure = settings.consistency == ConsistencyMode::pure;
+  if (settings.agreement == AgreementMode::off &&
+      settings.consistency == ConsistencyMode::off) {
     out.agreement = "off";
     return;
   }
-  const bool agreeing = settings.agreement == AgreementMode::on || can_agree;
+  const bool agreeing =
+      !is_pure && (settings.agreement == AgreementMode::on ||
+                   (settings.agreement == AgreementMode::when_possible && can_agree));
   if (agreeing) {
     const AgreementCounts agreed = agree(w, legaliser, monitor, settings.seed);
     renumber(w);
@@ -97,17 +93,24 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
     out.counts["relocations"] = static_cast<double>(agreed.moves);
   }
   out.agreement = agreeing ? "done"
-                           : "skipped: the metric varies too fast, ln gamma of 1 % of "
-                             "the edges is above " +
-                                 std::to_string(out.distortion.p99);
+                  : is_pure || settings.agreement == AgreementMode::off
+                      ? "off"
+                      : "skipped: the metric varies too fast, ln gamma of 1 % of "
+                        "the edges is above " +
+                            std::to_string(out.distortion.p99);
   watch.phase("certificate");
-  const StarCheck stars =
-      check_stars(w, monitor, settings.seed, settings.threads, agreeing);
+  StarCheck stars = check_stars(w, monitor, settings.seed, settings.threads, agreeing);
+  out.counts["star_failures"] = static_cast<double>(stars.failures);
+  out.counts["star_moves"] = static_cast<double>(stars.moves);
+  if (settings.consistency != ConsistencyMode::off) {
+    watch.phase("consistency");
+    out.consistency = refine_until_consistent(
+        w, legaliser, monitor, settings.parameters, settings.seed, settings.threads,
+        settings.consistency != ConsistencyMode::pure, stars);
+  }
   out.was_checked = true;
   out.simplex_ok = stars.simplex_ok;
   out.star_ok = stars.star_ok;
-  out.counts["star_failures"] = static_cast<double>(stars.failures);
-  out.counts["star_moves"] = static_cast<double>(stars.moves);
 }
 
 void extract(const Workspace &w, RemeshResult &out) {
@@ -147,7 +150,8 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
 
   watch.phase("shape");
   renumber(w);
-  shape(w, legaliser, monitor, out.counts);
+  if (settings.consistency != ConsistencyMode::pure)
+    shape(w, legaliser, monitor, out.counts);
   renumber(w);
 
   certify_stars(w, legaliser, monitor, settings, watch, out);

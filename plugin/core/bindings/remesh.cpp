@@ -65,6 +65,40 @@ Projection projection_of(nb::handle project) {
   };
 }
 
+ConsistencyMode consistency_mode(const std::string &name) {
+  if (name == "off")
+    return ConsistencyMode::off;
+  if (name == "on")
+    return ConsistencyMode::on;
+  if (name == "pure")
+    return ConsistencyMode::pure;
+  throw std::invalid_argument("unknown consistency mode '" + name + "'");
+}
+
+[[nodiscard]] ConsistencyParameters parameters_of(const nb::dict &given) {
+  const auto value = [&](const char *name) { return nb::cast<double>(given[name]); };
+  return {value("alpha_0"),
+          value("rho_0"),
+          value("sigma_0"),
+          value("gamma_0"),
+          value("delta"),
+          value("beta"),
+          nb::cast<int>(given["candidates"]),
+          value("max_growth")};
+}
+
+[[nodiscard]] nb::dict as_dict(const ConsistencyCounts &counts) {
+  nb::dict out;
+  out["size"] = counts.size;
+  out["radius_edge"] = counts.radius_edge;
+  out["sliver"] = counts.sliver;
+  out["inconsistency"] = counts.inconsistency;
+  out["boundary"] = counts.boundary;
+  out["rounds"] = counts.rounds;
+  out["stop_reason"] = counts.stop;
+  return out;
+}
+
 AgreementMode agreement_mode(const std::string &name) {
   if (name == "off")
     return AgreementMode::off;
@@ -83,7 +117,8 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
                  const Array1<Index> &geometry_facet_tags, const Array1<Index> &corners,
                  const Array1<Index> &frozen_tags, double ridge_angle,
                  double hausdorff_number, std::size_t max_vertices, double max_seconds,
-                 const std::string &agreement, std::uint64_t seed, int threads,
+                 const std::string &agreement, const std::string &consistency,
+                 const nb::dict &parameters, std::uint64_t seed, int threads,
                  const nb::object &project, const nb::object &callback) {
   const auto tensors = tensors_of<2>(metric);
   const GeometryInput geometry{
@@ -96,6 +131,8 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
   settings.max_vertices = max_vertices;
   settings.max_seconds = max_seconds;
   settings.agreement = agreement_mode(agreement);
+  settings.consistency = consistency_mode(consistency);
+  settings.parameters = parameters_of(parameters);
   settings.seed = seed;
   settings.threads = threads;
   const Projection projection = projection_of(project);
@@ -119,6 +156,7 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
     result["star_ok"] = nb::none();
   }
   result["agreement"] = out.agreement;
+  result["consistency"] = as_dict(out.consistency);
   nb::dict quantiles;
   quantiles["p50"] = out.distortion.p50;
   quantiles["p90"] = out.distortion.p90;
@@ -144,8 +182,9 @@ void bind_remesh(nb::module_ &module) {
       nb::arg("geometry_facet_tags").noconvert(), nb::arg("corners").noconvert(),
       nb::arg("frozen_tags").noconvert(), nb::arg("ridge_angle"),
       nb::arg("hausdorff_number"), nb::arg("max_vertices"), nb::arg("max_seconds"),
-      nb::arg("agreement"), nb::arg("seed"), nb::arg("threads"),
-      nb::arg("project").none(), nb::arg("callback").none(),
+      nb::arg("agreement"), nb::arg("consistency"), nb::arg("parameters"),
+      nb::arg("seed"), nb::arg("threads"), nb::arg("project").none(),
+      nb::arg("callback").none(),
       "A mesh of the geometry with unit edges in the metric that the mesh "
       "(points, cells) carries.");
 }
