@@ -12,6 +12,10 @@ namespace {
 constexpr int max_rounds = 80;
 /// Rounds without fewer failing cells after which the run has stalled.
 constexpr int patience = 12;
+/// Vertices are moved after every round when fewer than this fraction of cells fails,
+/// else now and then.
+constexpr double few_failing = .02;
+constexpr int rounds_between_moves = 4;
 /// New vertices keep this distance from the others in their own metric (packing).
 constexpr double separation = .4;
 /// Encroached edges shorter than this are not split.
@@ -56,8 +60,9 @@ struct BadCell {
 class Rounds {
 public:
   Rounds(Workspace &w, const ConsistencyParameters &parameters, std::uint64_t seed,
-         ConsistencyCounts &counts)
-      : w_(w), mesh_(w.mesh), parameters_(parameters), seed_(seed), counts_(counts) {}
+         bool everywhere, ConsistencyCounts &counts)
+      : w_(w), mesh_(w.mesh), parameters_(parameters), seed_(seed),
+        everywhere_(everywhere), counts_(counts) {}
 
   /// The cells that break a rule, those of the first rule first.
   [[nodiscard]] std::vector<BadCell>
@@ -75,13 +80,15 @@ public:
   }
 
   /// One point for each bad cell that shares no vertex with one treated before, of the
-  /// first rule that has any. @returns the number of vertices added.
-  std::size_t treat(const std::vector<BadCell> &bad, int round) {
+  /// first rule that can place any. @returns that rule, `none` when no rule can.
+  Rule treat(const std::vector<BadCell> &bad, int round) {
     std::vector<bool> touched(mesh_.vertices.size(), false);
     const std::size_t before = mesh_.vertices.size();
+    Rule acting = Rule::none;
     for (const BadCell &item : bad) {
-      if (item.rule != bad.front().rule)
+      if (item.rule != acting && mesh_.vertices.size() > before)
         break;
+      acting = item.rule;
       if (mesh_.at(item.cell) != item.vertices ||
           std::any_of(item.vertices.begin(), item.vertices.end(),
                       [&](Index v) { return touched[static_cast<std::size_t>(v)]; }))
@@ -90,7 +97,7 @@ public:
         touched[static_cast<std::size_t>(v)] = true;
       insert_for(item, round);
     }
-    return mesh_.vertices.size() - before;
+    return mesh_.vertices.size() > before ? acting : Rule::none;
   }
 
 private:
@@ -98,6 +105,7 @@ private:
   Triangulation<2> &mesh_;
   const ConsistencyParameters &parameters_;
   std::uint64_t seed_;
+  bool everywhere_; ///< rules 1 to 3 also for cells that are consistent
   ConsistencyCounts &counts_;
   std::vector<std::pair<Index, HalfFacet>> ring_;
 
@@ -105,6 +113,8 @@ private:
     const Cell<2> &cell = mesh_.at(c);
     const Simplex<2> s = mesh_.simplex(c);
     BadCell out{c, cell, Rule::none, none};
+    if (bits == all_vertices && !everywhere_)
+      return out;
     const auto worsen = [&](Rule rule, Index star) {
       if (out.rule == Rule::none || rule < out.rule) {
         out.rule = rule;
@@ -279,9 +289,9 @@ private:
   }
 };
 
-[[nodiscard]] std::size_t n_failing(const std::vector<std::uint8_t> &bits) {
-  return bits.size() -
-         static_cast<std::size_t>(std::count(bits.begin(), bits.end(), all_vertices));
+[[nodiscard]] double failing_fraction(const std::vector<std::uint8_t> &bits) {
+  const auto passing = std::count(bits.begin(), bits.end(), all_vertices);
+  return 1 - static_cast<double>(passing) / static_cast<double>(bits.size());
 }
 
 } // namespace
@@ -319,7 +329,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                                           std::uint64_t seed, int threads,
                                           bool relocate, StarCheck &check) {
   ConsistencyCounts counts;
-  Rounds rounds(w, parameters, seed, counts);
+  Rounds rounds(w, parameters, seed, !relocate, counts);
   const double most =
       (1 + parameters.max_growth) * static_cast<double>(w.mesh.vertices.size());
   MeshOnCurves best = w.on_curves;
@@ -327,7 +337,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
   int since_best = 0;
   for (counts.rounds = 0;; ++counts.rounds) {
     const std::vector<BadCell> bad = rounds.bad_cells(check.bits);
-    if (n_failing(check.bits) < n_failing(best_check.bits)) {
+    if (failing_fraction(check.bits) < failing_fraction(best_check.bits)) {
       best = w.on_curves;
       best_check = check;
       since_best = 0;
@@ -338,20 +348,26 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
       counts.stop = "max_rounds";
     else if (static_cast<double>(w.mesh.vertices.size()) > most)
       counts.stop = "max_growth";
-    else if (bad.front().rule == Rule::inconsistency && since_best++ == patience)
+    else if (since_best > patience)
       counts.stop = "stalled";
     else if (!monitor.keep_going(w.mesh.vertices.size(), 0))
       counts.stop = name_of(monitor.reason());
     if (!counts.stop.empty())
       break;
-    rounds.treat(bad, counts.rounds);
-    if (relocate)
+    // rules 1 to 3 end by packing; only rule 4 and rounds without a point can stall
+    const Rule rule = rounds.treat(bad, counts.rounds);
+    since_best += rule == Rule::inconsistency || rule == Rule::none;
+    // while failures are everywhere, moving vertices helps little for what it costs
+    const bool moving =
+        relocate && (failing_fraction(check.bits) < few_failing ||
+                     counts.rounds % rounds_between_moves == rounds_between_moves - 1);
+    if (moving)
       (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds));
     renumber(w);
     check = check_stars(w, monitor, seed + 1 + std::uint64_t(counts.rounds), threads,
-                        relocate);
+                        moving);
   }
-  if (n_failing(check.bits) > n_failing(best_check.bits)) {
+  if (failing_fraction(check.bits) > failing_fraction(best_check.bits)) {
     w.on_curves = std::move(best);
     check = std::move(best_check);
   }
