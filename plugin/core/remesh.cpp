@@ -49,7 +49,7 @@ private:
   double last_ = 0;
 };
 
-void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor,
+void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
            std::map<std::string, double> &counts) {
   const auto control = [&](double shortest, double longest) {
     const LengthCounts done = control_lengths(w, legaliser, monitor, shortest, longest);
@@ -58,9 +58,9 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor,
   };
   for (const Round &round : schedule) {
     for (int k = 0; k < round.pliant_sweeps; ++k)
-      smooth(w, legaliser, monitor, Target::unit_edges);
+      smooth(w, legaliser, monitor, Target::unit_edges, threads);
     for (int k = 0; k < round.odt_sweeps; ++k)
-      smooth(w, legaliser, monitor, Target::odt);
+      smooth(w, legaliser, monitor, Target::odt, threads);
     if (round.longest > 0)
       control(round.shortest, round.longest);
   }
@@ -151,7 +151,7 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   watch.phase("shape");
   renumber(w);
   if (settings.consistency != ConsistencyMode::pure)
-    shape(w, legaliser, monitor, out.counts);
+    shape(w, legaliser, monitor, settings.threads, out.counts);
   renumber(w);
 
   certify_stars(w, legaliser, monitor, settings, watch, out);
