@@ -23,10 +23,10 @@ struct VertexRange {
 /// flips can cycle: every run is capped, and a run that meets its cap is counted.
 class Legaliser {
 public:
-  explicit Legaliser(Triangulation<2> &mesh) : Legaliser(mesh, {}) {}
-  /// Flips only edges whose two cells have all their vertices in the range.
-  Legaliser(Triangulation<2> &mesh, VertexRange range)
-      : mesh_(mesh), range_(range), cavity_(mesh) {}
+  explicit Legaliser(Triangulation<2> &mesh) : mesh_(mesh), cavity_(mesh) {}
+
+  /// From now on flips only edges whose two cells have all their vertices in the range.
+  void restrict_to(const VertexRange &range) { range_ = range; }
 
   void push(HalfFacet edge) { stack_.push_back(edge); }
   /// All edges of the star of v and of its link.

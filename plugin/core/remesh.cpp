@@ -113,11 +113,9 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
   out.star_ok = stars.star_ok;
 }
 
-void extract(const Workspace &w, RemeshResult &out) {
-  const Triangulation<2> &mesh = w.mesh;
-  out.vertices = mesh.vertices;
-  out.cells = mesh.cells;
-  out.cell_tags = mesh.region;
+/// Hands the arrays of the mesh over; the workspace is spent.
+void extract(Workspace &w, RemeshResult &out) {
+  Triangulation<2> &mesh = w.mesh;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (std::size_t i = 0; i < 3; ++i) {
       const HalfFacet h(static_cast<Index>(c), i), other = mesh.opposite(h);
@@ -126,6 +124,9 @@ void extract(const Workspace &w, RemeshResult &out) {
       out.facets.push_back(mesh.facet(h));
       out.facet_tags.push_back(w.curve(w.curve_edge(h)).tag);
     }
+  out.vertices = std::move(mesh.vertices);
+  out.cells = std::move(mesh.cells);
+  out.cell_tags = std::move(mesh.region);
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "shape.h"
 
 #include <cmath>
+#include <mutex>
 
 namespace anistar {
 namespace {
@@ -97,29 +98,26 @@ void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
   if (!monitor.keep_going(0, 0))
     return;
   std::vector<std::vector<Index>> between(n_blocks);
-  std::vector<Legaliser> legalisers;
-  const auto range_of = [&](std::size_t block) {
-    return VertexRange{static_cast<Index>(n * block / n_blocks),
-                       static_cast<Index>(n * (block + 1) / n_blocks)};
-  };
-  for (std::size_t block = 0; block < n_blocks; ++block)
-    legalisers.emplace_back(w.mesh, range_of(block));
+  std::mutex counting;
   parallel_ranges(n_blocks, threads, [&](std::size_t begin, std::size_t end) {
+    Legaliser own(w.mesh);
+    Smoother smoother(w, own, target);
     for (std::size_t block = begin; block < end; ++block) {
-      const VertexRange range = range_of(block);
-      Smoother smoother(w, legalisers[block], target);
+      const VertexRange range{static_cast<Index>(n * block / n_blocks),
+                              static_cast<Index>(n * (block + 1) / n_blocks)};
+      own.restrict_to(range);
       for (Index v = range.first; v < range.last; ++v)
         if (w.mesh.is_used(v) && !smoother.visit(v, range))
           between[block].push_back(v);
     }
+    const std::lock_guard lock(counting);
+    legaliser.add_counts(own);
   });
   Smoother smoother(w, legaliser, target);
-  for (std::size_t block = 0; block < n_blocks; ++block) {
-    legaliser.add_counts(legalisers[block]);
-    for (Index v : between[block])
+  for (const std::vector<Index> &vertices : between)
+    for (Index v : vertices)
       if (w.mesh.is_used(v))
         (void)smoother.visit(v, {});
-  }
 }
 
 } // namespace anistar
