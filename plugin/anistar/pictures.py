@@ -82,7 +82,7 @@ def certificate_picture(
     figure, axes = _canvas(mesh, box)
     failing = mesh.points[mesh.cells[~certificate.simplex_ok]]
     axes.add_collection(PolyCollection(list(failing), facecolors=ACCENT, edgecolors="none"))
-    _draw_edges(axes, mesh, width=0.35)
+    _draw_edges(axes, mesh, width=0.7)
     _draw_boundary(axes, mesh)
     _save(figure, path)
 
