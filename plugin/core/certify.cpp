@@ -241,17 +241,6 @@ std::vector<std::array<Index, 3>> walls(std::span<const Cell<2>> cells,
   return out;
 }
 
-double distortion(const SymmetricTensor<2> &M, const SymmetricTensor<2> &N) {
-  const double det = determinant<2>(M);
-  // trace and determinant of M^-1 N; its eigenvalues are positive
-  const double trace =
-      (M(1, 1) * N(0, 0) - 2 * M(0, 1) * N(0, 1) + M(0, 0) * N(1, 1)) / det;
-  const double product = determinant<2>(N) / det;
-  const double large =
-      .5 * trace + std::sqrt(std::max(0., .25 * trace * trace - product));
-  return std::sqrt(std::max(large, large / product));
-}
-
 CertificateResult certify(std::span<const Vertex<2>> vertices,
                           std::span<const Cell<2>> cells,
                           std::span<const Facet<2>> facets, int threads) {

@@ -2,6 +2,7 @@
 // The certificate of a mesh for the metric at its vertices.
 
 #include "certificate.h"
+#include "statistics.h"
 
 namespace anistar {
 
@@ -32,10 +33,5 @@ struct CertificateResult {
 [[nodiscard]] std::vector<std::array<Index, 3>> walls(std::span<const Cell<2>> cells,
                                                       std::span<const Facet<2>> facets,
                                                       std::size_t n_points);
-
-/// gamma(M, N) = max(|F_M^-1 F_N|, |F_N^-1 F_M|), the distortion between two metrics
-/// (RR-7712 v2, section 2).
-[[nodiscard]] double distortion(const SymmetricTensor<2> &M,
-                                const SymmetricTensor<2> &N);
 
 } // namespace anistar

@@ -223,4 +223,12 @@ void fill_collapse(Workspace &w, Collapse &collapse) {
   w.mesh.vertex_cell[static_cast<std::size_t>(collapse.vertex)] = none;
 }
 
+void renumber(Workspace &w) {
+  const std::vector<Index> rank = sort_along_curve(w.mesh);
+  for (CurveEdge &edge : w.on_curves.curve_edges) {
+    edge.v0 = rank[static_cast<std::size_t>(edge.v0)];
+    edge.v1 = rank[static_cast<std::size_t>(edge.v1)];
+  }
+}
+
 } // namespace anistar

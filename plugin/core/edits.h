@@ -64,4 +64,7 @@ struct Collapse {
 [[nodiscard]] bool bound_collapse(Workspace &w, Collapse &collapse);
 void fill_collapse(Workspace &w, Collapse &collapse);
 
+/// Sorts the mesh along a Hilbert curve and tells the curve edges.
+void renumber(Workspace &w);
+
 } // namespace anistar

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 
 from ..errors import FormatError
-from ..formats import read, read_metric, write
-from ..remesh import remesh
+from ..formats import read, read_metric, write, write_metric
+from ..remesh import RemeshReport, remesh
 from ..transfer import transfer
 from . import console
 from .files import companion, writable
@@ -25,6 +25,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="tensors, or sizes, at the points; for in.mesh the default is in.sol",
     )
+    parser.add_argument(
+        "--metric-output",
+        metavar="FILE",
+        help="metric at the new points; for out.mesh without fields the default is out.sol",
+    )
     parser.add_argument("--geometry", metavar="FILE", help="mesh whose boundary is the geometry")
     add_remesh_options(parser)
 
@@ -32,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output)
+    metric_output = writable(arguments.metric_output) if arguments.metric_output else None
     options = adapt_options(arguments)
     source = arguments.metric or companion(arguments.input)
     if source is None:
@@ -43,6 +49,10 @@ def run(arguments: argparse.Namespace) -> int:
     # The solution beside a medit mesh is the metric itself, not a field to carry.
     carried = fields if arguments.metric else {}
     write(output, done.mesh, transfer(mesh, carried, done.mesh, options.transfer).fields)
+    if metric_output is None and not carried and output.suffix in (".mesh", ".meshb"):
+        metric_output = output.with_suffix(".sol")
+    if metric_output is not None:
+        write_metric(metric_output, done.mesh, done.metric)
     if arguments.json:
         console.show_json(done.report)
     else:
@@ -52,4 +62,14 @@ def run(arguments: argparse.Namespace) -> int:
             [arguments.output, done.mesh.n_points, done.mesh.n_cells],
         ]
         console.show_table("remeshed", columns, rows)
+        console.say(_certified(done.report))
     return 0
+
+
+def _certified(report: RemeshReport) -> str:
+    if report.star_ok is None or report.simplex_ok is None:
+        return "agreement off: the stars were not checked"
+    return (
+        f"{100 * report.star_ok:.2f} % of the stars and {100 * report.simplex_ok:.2f} % of the "
+        f"simplices are certified; agreement {report.agreement}"
+    )
