@@ -142,8 +142,12 @@ void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
     const auto ridge = ridge_of<d>(wall.cell, a, wall.facet);
     for (const Port &port : ports_)
       if (port.ridge == ridge) {
+        const Index constraint =
+            wall.constraint != none ? wall.constraint : port.constraint;
         mesh_.join(port.half, wall.beyond);
-        mesh_.set_constraint(port.half, wall.constraint);
+        mesh_.set_constraint(port.half, constraint);
+        if (wall.beyond.exists()) // a curve may come to run along the cavity
+          mesh_.set_constraint(wall.beyond, constraint);
         break;
       }
   }
