@@ -49,6 +49,14 @@ CASES = {
     "unknown option": ("adapt in.vtu -o o.vtu --colour red", "unrecognized arguments: --colour"),
     "not a number": ("adapt in.vtu -o o.vtu --h-min tiny", "argument --h-min"),
     "not off": ("adapt in.vtu -o o.vtu --a-max some", "argument --a-max: invalid number or 'off'"),
+    "not a list": (
+        "adapt in.vtu -o o.vtu --frozen-tags 1,x",
+        "argument --frozen-tags: '1,x' is no list of integers like 1,2,3",
+    ),
+    "unknown recovery": (
+        "adapt in.vtu -o o.vtu --target-complexity 9 --method magic",
+        "recovery method must be one of auto, quadratic, l2, got 'magic'",
+    ),
     "out of bounds": ("adapt in.vtu -o o.vtu --target-complexity -3", "target_complexity"),
     "no target": ("adapt in.vtu -o o.vtu", "target_complexity or target_elements"),
     "no such file": ("adapt gone.vtu -o o.vtu --target-complexity 9", "gone.vtu: no such file"),
