@@ -81,6 +81,14 @@ CASES = {
     "no metric": ("remesh in.vtu -o o.vtu", "give --metric, there is no .sol beside in.vtu"),
     "output in no folder": ("convert in.vtu no/o.vtu", "cannot write no/o.vtu: no such folder no"),
     "output is a folder": ("convert in.vtu folder.vtu", "cannot write folder.vtu: it is a folder"),
+    "output in no known format": (
+        "adapt in.vtu --target-complexity 9 -o o.nowhere",
+        "cannot write o.nowhere: no format has the suffix '.nowhere'",
+    ),
+    "output that holds no mesh": (
+        "adapt in.vtu --target-complexity 9 -o o.sol",
+        "cannot write o.sol: a solution file holds no mesh",
+    ),
     "output without suffix": ("convert in.vtu o", "cannot write o: the suffix"),
     "unknown method": (
         "transfer in.vtu bare.vtu --method magic -o o.vtu",
