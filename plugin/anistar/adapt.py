@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .aliases import STAGES, canonical
+from .aliases import canonical
 from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import MetricOptions, from_fields
@@ -20,6 +20,8 @@ from .transfer import TransferOptions, TransferReport, transfer
 
 Floats = NDArray[np.float64]
 Projection = Callable[[Floats, int], Floats]
+
+STAGES = ("metric", "remesh", "transfer")
 
 
 def _transfer_to_a_remesh() -> TransferOptions:
@@ -75,7 +77,8 @@ class AdaptOptions:
         options : mapping
             Options of any stage by name, for instance ``{"target_complexity": 1e4}``,
             ``{"dm_plex_metric": {"h_min": 1e-3}}`` or ``{"hmin": 1e-3}``; the stages ``metric``,
-            ``remesh`` and ``transfer`` may also be given as mappings.
+            ``remesh`` and ``transfer`` may also be given as mappings. A plain ``method`` is that
+            of the metric.
 
         Raises
         ------
@@ -83,16 +86,12 @@ class AdaptOptions:
             If a name is unknown or given twice.
         """
         defaults = cls()
-        owners = {
-            item.name: stage for stage in STAGES for item in fields_of(getattr(defaults, stage))
+        known = {
+            stage: [item.name for item in fields_of(getattr(defaults, stage))] for stage in STAGES
         }
-        chosen: dict[str, dict[str, Any]] = {stage: {} for stage in STAGES}
-        known = canonical(options, (*owners, "metric_fields"))
-        names = known.pop("metric_fields", None)
-        for name, value in known.items():
-            chosen[owners[name]][name] = value
+        chosen = canonical(options, {**known, "adapt": ["metric_fields"]})
         made = {stage: replace(getattr(defaults, stage), **chosen[stage]) for stage in STAGES}
-        return cls(**made, metric_fields=names)
+        return cls(**made, **chosen["adapt"])
 
 
 @dataclass(frozen=True, slots=True)

@@ -151,6 +151,15 @@ class TestOptionsFromPlainNames:
         assert made.remesh == RemeshOptions(max_vertices=50)
         assert made.transfer == TransferOptions(outside="nan")
 
+    def test_the_method_is_that_of_the_metric_unless_it_is_nested(self):
+        plain = AdaptOptions.from_dict({"method": "quadratic"})
+        nested = AdaptOptions.from_dict(
+            {"metric": {"method": "l2"}, "transfer": {"method": "interpolate"}}
+        )
+        assert plain.metric == MetricOptions(method="quadratic")
+        assert nested.metric == MetricOptions(method="l2")
+        assert plain.transfer == nested.transfer == TransferOptions(outside="nearest")
+
     def test_none_given_is_the_default(self):
         assert AdaptOptions.from_dict({}) == AdaptOptions()
 
@@ -161,6 +170,8 @@ class TestOptionsFromPlainNames:
             ({"zzz": 1.0}, "unknown option 'zzz': options: a_max,"),
             ({"hmin": 1.0, "h_min": 2.0}, "option 'h_min' is given twice"),
             ({"h_min": -1.0}, "h_min"),
+            ({"method": "magic"}, "recovery method must be one of auto, quadratic, l2"),
+            ({"transfer": {"h_min": 1.0}}, "unknown option 'h_min'"),
         ],
     )
     def test_a_bad_option_is_named(self, given, message):

@@ -49,6 +49,14 @@ CASES = {
     "unknown option": ("adapt in.vtu -o o.vtu --colour red", "unrecognized arguments: --colour"),
     "not a number": ("adapt in.vtu -o o.vtu --h-min tiny", "argument --h-min"),
     "not off": ("adapt in.vtu -o o.vtu --a-max some", "argument --a-max: invalid number or 'off'"),
+    "not a list": (
+        "adapt in.vtu -o o.vtu --frozen-tags 1,x",
+        "argument --frozen-tags: '1,x' is no list of integers like 1,2,3",
+    ),
+    "unknown recovery": (
+        "adapt in.vtu -o o.vtu --target-complexity 9 --method magic",
+        "recovery method must be one of auto, quadratic, l2, got 'magic'",
+    ),
     "out of bounds": ("adapt in.vtu -o o.vtu --target-complexity -3", "target_complexity"),
     "no target": ("adapt in.vtu -o o.vtu", "target_complexity or target_elements"),
     "no such file": ("adapt gone.vtu -o o.vtu --target-complexity 9", "gone.vtu: no such file"),
@@ -73,6 +81,14 @@ CASES = {
     "no metric": ("remesh in.vtu -o o.vtu", "give --metric, there is no .sol beside in.vtu"),
     "output in no folder": ("convert in.vtu no/o.vtu", "cannot write no/o.vtu: no such folder no"),
     "output is a folder": ("convert in.vtu folder.vtu", "cannot write folder.vtu: it is a folder"),
+    "output in no known format": (
+        "adapt in.vtu --target-complexity 9 -o o.nowhere",
+        "cannot write o.nowhere: no format has the suffix '.nowhere'",
+    ),
+    "output that holds no mesh": (
+        "adapt in.vtu --target-complexity 9 -o o.sol",
+        "cannot write o.sol: a solution file holds no mesh",
+    ),
     "output without suffix": ("convert in.vtu o", "cannot write o: the suffix"),
     "unknown method": (
         "transfer in.vtu bare.vtu --method magic -o o.vtu",

@@ -119,7 +119,9 @@ def _topology(case, mesh):
 
 
 def _euler(cells):
-    edges = np.unique(np.sort(np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]])), axis=0)
+    edges = np.unique(
+        np.sort(np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]])), axis=0
+    )
     return len(np.unique(cells)) - len(edges) + len(cells)
 
 
@@ -156,12 +158,16 @@ def _frozen(case, mesh):
 def _measures(case, mesh):
     """Lengths and areas within what chords of this Hausdorff number may change."""
     geometry, h = case.geometry, case.options.hausdorff_number
-    got, want = (measure_by_tag(facet_measures(m.points, m.facets), m.facet_tags) for m in (mesh, geometry))
+    got, want = (
+        measure_by_tag(facet_measures(m.points, m.facets), m.facet_tags) for m in (mesh, geometry)
+    )
     for tag, length in want.items():
         if not abs(got[tag] / length - 1) <= 0.1 + 1.5 * h:
             return f"facet tag {tag} measures {got[tag]:.6g}, not {length:.6g}"
     slack = sum(float((facet_measures(m.points, m.facets) ** 2).sum()) for m in (mesh, geometry))
-    got, want = (measure_by_tag(cell_volumes(m.points, m.cells), m.cell_tags) for m in (mesh, geometry))
+    got, want = (
+        measure_by_tag(cell_volumes(m.points, m.cells), m.cell_tags) for m in (mesh, geometry)
+    )
     for tag, area in want.items():
         if not abs(got[tag] - area) <= (h + 0.1) * slack + 1e-10 * area:
             return f"region {tag} measures {got[tag]:.6g}, not {area:.6g}"

@@ -240,7 +240,9 @@ def _constraints(rng, points, cells, tags):
     table = facet_table(cells, len(points))
     boundary = table.facets[table.counts == 1]
     inner = table.counts == 2
-    interface = table.facets[inner][tags[table.cells[inner][:, 0]] != tags[table.cells[inner][:, 1]]]
+    interface = table.facets[inner][
+        tags[table.cells[inner][:, 0]] != tags[table.cells[inner][:, 1]]
+    ]
     middle = points[boundary].mean(axis=1)
     style = rng.integers(3)
     if style == 0:

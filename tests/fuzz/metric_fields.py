@@ -2,7 +2,6 @@
 
 import numpy as np
 
-import anistar
 from anistar.metric import complexity, graded
 
 
@@ -55,7 +54,11 @@ def _smooth(rng, x):
 
 def _rough(rng, x):
     n = len(x)
-    return rng.uniform(0, np.pi, n), rng.normal(size=n) * rng.uniform(0, 2), _ratio(rng) * rng.random(n)
+    return (
+        rng.uniform(0, np.pi, n),
+        rng.normal(size=n) * rng.uniform(0, 2),
+        _ratio(rng) * rng.random(n),
+    )
 
 
 def _layer(rng, x):

@@ -115,7 +115,10 @@ def write_reproducer(folder, seed, number, largest):
         for key in ("points", "cells", "cell_tags", "facets", "facet_tags", "corners"):
             arrays[f"{name}_{key}"] = getattr(mesh, key)
     np.savez(
-        folder / f"case-{seed}-{number}.npz", metric=case.metric, options=repr(case.options), **arrays
+        folder / f"case-{seed}-{number}.npz",
+        metric=case.metric,
+        options=repr(case.options),
+        **arrays,
     )
 
 
@@ -126,7 +129,9 @@ def print_table(rows):
         if "kind" in row:
             groups["domain", row["kind"]].append(row)
             groups["metric", row["metric"]].append(row)
-    print(f"{'':18}{'cases':>7}{'bad':>5}{'refused':>9}{'certified':>11}{'stars ok':>10}{'s max':>7}")
+    print(
+        f"{'':18}{'cases':>7}{'bad':>5}{'refused':>9}{'certified':>11}{'stars ok':>10}{'s max':>7}"
+    )
     for (what, kind), members in sorted(groups.items()):
         made = [row for row in members if row.get("n_points")]
         certified = sum(row.get("reason") == "certified" for row in made)
@@ -137,7 +142,9 @@ def print_table(rows):
             f"{stars:10.2%}{max(r.get('seconds', 0) for r in members):7.2f}"
         )
     print("reasons:", dict(Counter(row["reason"] for row in rows if row.get("reason"))))
-    print("refusals:", dict(Counter(row["error"].split("(")[0] for row in rows if row.get("error"))))
+    print(
+        "refusals:", dict(Counter(row["error"].split("(")[0] for row in rows if row.get("error")))
+    )
     skipped = Counter(row["skipped"][:60] for row in rows if "skipped" in row)
     print("not generated:", sum(skipped.values()), dict(skipped.most_common(4)))
 

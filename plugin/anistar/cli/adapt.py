@@ -34,7 +34,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output)
-    metric_output = writable(arguments.metric_output) if arguments.metric_output else None
+    metric_output = (
+        writable(arguments.metric_output, is_mesh=False) if arguments.metric_output else None
+    )
     options = adapt_options(arguments, metric_fields=arguments.field)
     mesh, fields = read(arguments.input)
     geometry = read(arguments.geometry)[0] if arguments.geometry else None

@@ -6,15 +6,18 @@ import os
 from pathlib import Path
 
 from ..errors import FormatError
+from ..formats import is_known
+from ..formats.suffixes import SOLUTIONS, suffix_of
 
 
-def writable(path: str) -> Path:
+def writable(path: str, *, is_mesh: bool = True) -> Path:
     """Return the output path, checked before anything is computed.
 
     Raises
     ------
     FormatError
-        If the folder does not exist or cannot be written, or the path is a folder.
+        If the folder does not exist or cannot be written, the path is a folder, no format has
+        its suffix, or the format holds no mesh although `is_mesh`.
     """
     target = Path(path)
     if target.is_dir():
@@ -23,17 +26,12 @@ def writable(path: str) -> Path:
         raise FormatError(
             f"cannot write {target}: the suffix, which chooses the format, is missing"
         )
+    if not is_known(target):
+        raise FormatError(f"cannot write {target}: no format has the suffix {target.suffix!r}")
+    if is_mesh and suffix_of(target) in SOLUTIONS:
+        raise FormatError(f"cannot write {target}: a solution file holds no mesh")
     if not target.parent.is_dir():
         raise FormatError(f"cannot write {target}: no such folder {target.parent}")
     if not os.access(target.parent, os.W_OK):
         raise FormatError(f"cannot write {target}: folder {target.parent} is not writable")
     return target
-
-
-def companion(path: str) -> Path | None:
-    """Return the medit solution beside a mesh file, if there is one."""
-    for suffix in (".sol", ".solb"):
-        beside = Path(path).with_suffix(suffix)
-        if beside.is_file():
-            return beside
-    return None

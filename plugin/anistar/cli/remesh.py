@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from ..errors import FormatError
 from ..formats import read, read_metric, write, write_metric
+from ..formats.suffixes import solution_beside
 from ..remesh import RemeshReport, remesh
 from ..transfer import transfer
 from . import console
-from .files import companion, writable
+from .files import writable
 from .options import adapt_options, add_remesh_options
 
 SUMMARY = "remesh to a given metric, and carry the fields over"
@@ -39,7 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
     output = writable(arguments.output)
     metric_output = writable(arguments.metric_output) if arguments.metric_output else None
     options = adapt_options(arguments)
-    source = arguments.metric or companion(arguments.input)
+    beside = solution_beside(Path(arguments.input))
+    source = Path(arguments.metric) if arguments.metric else beside
     if source is None:
         raise FormatError(f"no metric: give --metric, there is no .sol beside {arguments.input}")
     mesh, fields = read(arguments.input)
@@ -47,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     geometry = read(arguments.geometry)[0] if arguments.geometry else None
     done = remesh(mesh, M, options.remesh, geometry=geometry)
     # The solution beside a medit mesh is the metric itself, not a field to carry.
-    carried = fields if arguments.metric else {}
+    carried = {} if source == beside else fields
     write(output, done.mesh, transfer(mesh, carried, done.mesh, options.transfer).fields)
     if metric_output is None and not carried and output.suffix in (".mesh", ".meshb"):
         metric_output = output.with_suffix(".sol")

@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
-    output = writable(arguments.output)
+    output = writable(arguments.output, is_mesh=False)
     options = TransferOptions(
         method=arguments.method,
         outside=arguments.outside,
