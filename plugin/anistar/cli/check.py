@@ -14,7 +14,7 @@ from ..quality import quality
 from ..topology import Float
 from ..validation import Violation, validate
 from . import console
-from .files import writable
+from .files import writable, writable_file
 
 SUMMARY = "check a mesh; measure and certify it in a metric"
 EXAMPLE = "anistar check out.mesh --metric out.sol --reference in.mesh -o figures.vtu"
@@ -66,12 +66,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check_targets(arguments: argparse.Namespace) -> None:
-    for flag in ("output", "picture"):
+    for flag, check in (("output", writable), ("picture", writable_file)):
         path = getattr(arguments, flag)
         if path and not arguments.metric:
             raise ValueError(f"--{flag} needs --metric")
         if path:
-            writable(path)
+            check(path)
 
 
 def _write(

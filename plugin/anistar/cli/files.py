@@ -11,13 +11,30 @@ from ..formats.suffixes import SOLUTIONS, suffix_of
 
 
 def writable(path: str, *, is_mesh: bool = True) -> Path:
-    """Return the output path, checked before anything is computed.
+    """Return the path of a mesh or a solution, checked before anything is computed.
 
     Raises
     ------
     FormatError
         If the folder does not exist or cannot be written, the path is a folder, no format has
         its suffix, or the format holds no mesh although `is_mesh`.
+    """
+    target = writable_file(path)
+    if not is_known(target):
+        raise FormatError(f"cannot write {target}: no format has the suffix {target.suffix!r}")
+    if is_mesh and suffix_of(target) in SOLUTIONS:
+        raise FormatError(f"cannot write {target}: a solution file holds no mesh")
+    return target
+
+
+def writable_file(path: str) -> Path:
+    """Return the path of any output file, checked before anything is computed.
+
+    Raises
+    ------
+    FormatError
+        If the folder does not exist or cannot be written, or the path is a folder or has no
+        suffix.
     """
     target = Path(path)
     if target.is_dir():
@@ -26,10 +43,6 @@ def writable(path: str, *, is_mesh: bool = True) -> Path:
         raise FormatError(
             f"cannot write {target}: the suffix, which chooses the format, is missing"
         )
-    if not is_known(target):
-        raise FormatError(f"cannot write {target}: no format has the suffix {target.suffix!r}")
-    if is_mesh and suffix_of(target) in SOLUTIONS:
-        raise FormatError(f"cannot write {target}: a solution file holds no mesh")
     if not target.parent.is_dir():
         raise FormatError(f"cannot write {target}: no such folder {target.parent}")
     if not os.access(target.parent, os.W_OK):

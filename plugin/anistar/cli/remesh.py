@@ -39,7 +39,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output)
-    metric_output = writable(arguments.metric_output) if arguments.metric_output else None
+    metric_output = (
+        writable(arguments.metric_output, is_mesh=False) if arguments.metric_output else None
+    )
     options = adapt_options(arguments)
     beside = solution_beside(Path(arguments.input))
     source = Path(arguments.metric) if arguments.metric else beside
