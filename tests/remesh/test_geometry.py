@@ -232,3 +232,35 @@ def test_names_of_the_geometry_come_back_also_without_those_of_the_mesh():
     done = remesh(bare, uniform(bare, 0.1), geometry=geometry)
     assert validate(done.mesh, geometry) == []
     assert done.mesh.names == geometry.names
+
+
+@pytest.mark.parametrize("degrees", [30, 5, 1, 1e-3])
+def test_sharp_corners_are_meshed(degrees):
+    angle = np.radians(degrees)
+    wedge = Mesh(
+        points=[[0, 0], [1, 0], [np.cos(angle), np.sin(angle)]],
+        cells=[[0, 1, 2]],
+        facets=[[0, 1], [1, 2], [2, 0]],
+        facet_tags=[1, 2, 3],
+    )
+    done = remesh(wedge, uniform(wedge, 0.05))
+    assert validate(done.mesh, wedge) == []
+    assert has_points(done.mesh, wedge.points)
+    assert 40 <= done.mesh.n_points < 200
+
+
+@pytest.mark.parametrize(
+    ("make", "fewest"), [(square, 4), (two_regions, 6), (slit, 6), (l_shape, 6), (annulus, 24)]
+)
+def test_a_metric_that_asks_for_nothing_leaves_what_the_shape_needs(make, fewest):
+    mesh = make(4)
+    done = remesh(mesh, uniform(mesh, 1e3))
+    assert validate(done.mesh, mesh, tolerance=0.05) == []
+    assert done.mesh.n_points == fewest
+
+
+@pytest.mark.parametrize("width", [0.1, 0.01, 1e-3])
+def test_a_channel_far_narrower_than_the_edges_stays_open(width):
+    mesh = annulus(4, inner=1 - width)
+    done = remesh(mesh, uniform(mesh, 0.3))
+    assert validate(done.mesh, mesh, tolerance=0.02) == []
