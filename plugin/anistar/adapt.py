@@ -14,6 +14,7 @@ from .aliases import canonical
 from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import MetricOptions, from_fields
+from .options import require
 from .remesh import RemeshOptions, remesh
 from .report import as_builtin, fields_of
 from .transfer import TransferOptions, TransferReport, transfer
@@ -48,7 +49,8 @@ class AdaptOptions:
     Raises
     ------
     TypeError
-        If `metric_fields` is a string or holds something else than strings.
+        If a stage has options of another class, or `metric_fields` is a string or holds
+        something else than strings.
     ValueError
         If `metric_fields` is empty.
     """
@@ -59,6 +61,9 @@ class AdaptOptions:
     metric_fields: Sequence[str] | None = None
 
     def __post_init__(self) -> None:
+        require(MetricOptions, metric=self.metric)
+        require(RemeshOptions, remesh=self.remesh)
+        require(TransferOptions, transfer=self.transfer)
         names = self.metric_fields
         if names is None:
             return
@@ -170,6 +175,7 @@ def adapt(
     """
     started = time.perf_counter()
     options = options if options is not None else AdaptOptions()
+    require(AdaptOptions, options=options)
     checked = as_fields(mesh, fields)
     names = metric_field_names(checked, options.metric_fields)
     M, ledger = from_fields(mesh, {name: checked[name] for name in names}, options.metric)

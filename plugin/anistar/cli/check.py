@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ..formats import read, read_metric
+from ..formats import read, read_metric, read_with_report
 from ..quality import quality
 from ..validation import validate
 from . import console
@@ -30,16 +30,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; 1 if the mesh breaks a rule."""
-    mesh, _ = read(arguments.input)
+    mesh, _, found = read_with_report(arguments.input)
     M = read_metric(arguments.metric, mesh) if arguments.metric else None
     reference = read(arguments.reference)[0] if arguments.reference else None
     problems = validate(mesh, reference, tolerance=arguments.tolerance)
     figures = quality(mesh, M).as_dict()
     if arguments.json:
         messages = [problem.message for problem in problems]
-        console.show_json({"valid": not problems, "problems": messages, **figures})
+        said = {"valid": not problems, "problems": messages, "read": found}
+        console.show_json({**said, **figures})
     else:
-        console.show_table(arguments.input, ["", ""], [[k, v] for k, v in figures.items()])
+        rows = [[name, value] for name, value in figures.items() if value is not None]
+        console.show_table(arguments.input, ["", ""], rows)
         for problem in problems:
             console.say(f"{problem.kind}: {problem.message}")
         console.say("not valid" if problems else "valid")
