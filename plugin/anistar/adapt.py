@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from .mesh import Mesh
 from .metric import MetricOptions, from_fields
 from .options import require
 from .remesh import RemeshOptions, remesh
-from .report import as_builtin, fields_of
+from .report import attributes
 from .transfer import TransferOptions, TransferReport, transfer
 
 Floats = NDArray[np.float64]
@@ -92,7 +92,7 @@ class AdaptOptions:
         """
         defaults = cls()
         known = {
-            stage: [item.name for item in fields_of(getattr(defaults, stage))] for stage in STAGES
+            stage: [item.name for item in fields(getattr(defaults, stage))] for stage in STAGES
         }
         chosen = canonical(options, {**known, "adapt": ["metric_fields"]})
         made = {stage: replace(getattr(defaults, stage), **chosen[stage]) for stage in STAGES}
@@ -125,7 +125,7 @@ class AdaptReport:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
-        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+        return attributes(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .mesh import Mesh
-from .report import as_builtin, fields_of
+from .report import attributes
 from .topology import cell_volumes, unique_edges
 
 Floats = NDArray[np.float64]
@@ -54,7 +54,7 @@ class Quality:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
-        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+        return attributes(self)
 
 
 def quality(mesh: Mesh, M: Floats | None = None) -> Quality:

@@ -14,7 +14,7 @@ from .fields import as_fields
 from .interpolation_error import ExactFunction, l2_error
 from .loop import LoopOptions, Solve, Step, adapt_loop
 from .mesh import Mesh
-from .report import as_builtin, fields_of
+from .report import as_builtin, attributes
 
 ErrorFunction = Callable[[Mesh, dict[str, Any]], float]
 
@@ -43,7 +43,7 @@ class StudyRow:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
-        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+        return attributes(self)
 
 
 @dataclass(frozen=True, eq=False)
