@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -14,8 +14,9 @@ from .aliases import canonical
 from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import MetricOptions, from_fields
+from .options import require
 from .remesh import RemeshOptions, remesh
-from .report import as_builtin, fields_of
+from .report import attributes
 from .transfer import TransferOptions, TransferReport, transfer
 
 Floats = NDArray[np.float64]
@@ -48,7 +49,8 @@ class AdaptOptions:
     Raises
     ------
     TypeError
-        If `metric_fields` is a string or holds something else than strings.
+        If a stage has options of another class, or `metric_fields` is a string or holds
+        something else than strings.
     ValueError
         If `metric_fields` is empty.
     """
@@ -59,6 +61,9 @@ class AdaptOptions:
     metric_fields: Sequence[str] | None = None
 
     def __post_init__(self) -> None:
+        require(MetricOptions, metric=self.metric)
+        require(RemeshOptions, remesh=self.remesh)
+        require(TransferOptions, transfer=self.transfer)
         names = self.metric_fields
         if names is None:
             return
@@ -87,7 +92,7 @@ class AdaptOptions:
         """
         defaults = cls()
         known = {
-            stage: [item.name for item in fields_of(getattr(defaults, stage))] for stage in STAGES
+            stage: [item.name for item in fields(getattr(defaults, stage))] for stage in STAGES
         }
         chosen = canonical(options, {**known, "adapt": ["metric_fields"]})
         made = {stage: replace(getattr(defaults, stage), **chosen[stage]) for stage in STAGES}
@@ -120,7 +125,7 @@ class AdaptReport:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
-        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+        return attributes(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,6 +175,7 @@ def adapt(
     """
     started = time.perf_counter()
     options = options if options is not None else AdaptOptions()
+    require(AdaptOptions, options=options)
     checked = as_fields(mesh, fields)
     names = metric_field_names(checked, options.metric_fields)
     M, ledger = from_fields(mesh, {name: checked[name] for name in names}, options.metric)

@@ -132,6 +132,20 @@ class TestBadInput:
             AdaptOptions(metric_fields=[])
 
 
+class TestOptionsOfAnotherClass:
+    def test_a_dict_is_refused_with_a_hint(self):
+        mesh = square(2)
+        with pytest.raises(
+            TypeError, match=r"options must be AdaptOptions, not dict: AdaptOptions\."
+        ):
+            adapt(mesh, {"u": mesh.points[:, 0]}, {"target_complexity": 9})
+
+    @pytest.mark.parametrize("stage", ["metric", "remesh", "transfer"])
+    def test_a_stage_with_other_options_is_named(self, stage):
+        with pytest.raises(TypeError, match=f"{stage} must be .*, not str"):
+            AdaptOptions(**{stage: "l2"})
+
+
 class TestOptionsFromPlainNames:
     def test_petsc_names_nested_and_flat(self):
         nested = AdaptOptions.from_dict({"dm_plex_metric": {"h_min": 1e-3, "a_max": 0}})

@@ -1,10 +1,14 @@
 import json
+import os
+import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from meshes import square
 
+import anistar
 from anistar.cli import main
 from anistar.formats import read, write, write_metric
 
@@ -52,6 +56,10 @@ CASES = {
     "not a list": (
         "adapt in.vtu -o o.vtu --frozen-tags 1,x",
         "argument --frozen-tags: '1,x' is no list of integers like 1,2,3",
+    ),
+    "metric over the fields": (
+        "adapt in.vtu --target-complexity 9 -o o.mesh --metric-output o.sol",
+        "the metric cannot go to o.sol: the mesh or its fields are written there",
     ),
     "unknown recovery": (
         "adapt in.vtu -o o.vtu --target-complexity 9 --method magic",
@@ -184,3 +192,57 @@ def test_a_crash_while_writing_leaves_the_old_file(folder, monkeypatch):
     assert not list(folder.glob("*.part*"))
     assert not list(folder.glob(".*part*"))
     assert read(folder / "in.vtu")[0].n_points == 25
+
+
+def test_what_an_interrupted_loop_finished_is_kept(folder, capsys, monkeypatch):
+    def interrupted(*arguments, **more):
+        raise KeyboardInterrupt
+
+    (folder / "solver.py").write_text(SECOND_CALL_FAILS)
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    monkeypatch.setattr("anistar.loop.adapt", interrupted)
+    assert run("loop in.vtu --complexities 50 -o run", "--command", command) == 1
+    assert capsys.readouterr().err == "anistar loop: interrupted\n"
+    report = json.loads((folder / "run" / "report.json").read_text())
+    assert report["stop_reason"] == "interrupted"
+    assert [step["points"] for step in report["steps"]] == [25]
+
+
+def test_a_solution_of_another_mesh_is_said(folder, capsys):
+    script = SECOND_CALL_FAILS.replace("range(25)", "range(24)").replace(
+        "Vertices 25", "Vertices 24"
+    )
+    (folder / "solver.py").write_text(script)
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    assert run("loop in.vtu --complexities 50 -o run", "--command", command) == 2
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert "no fields in run/step_000.sol: step_000.sol is not used: it has another number" in said
+
+
+def test_a_failed_solution_leaves_the_old_mesh_beside_the_old_solution(folder, monkeypatch):
+    mesh = square(2)
+    write("pair.mesh", mesh, {"u": mesh.points[:, 0]})
+    before = {path: (folder / path).read_bytes() for path in ("pair.mesh", "pair.sol")}
+
+    def full(*arguments):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("anistar.formats.medit.write_solution", full)
+    assert run("convert in.vtu pair.mesh") == 2
+    assert {path: (folder / path).read_bytes() for path in before} == before
+
+
+def test_a_reader_that_has_seen_enough_is_no_error(folder):
+    words = [sys.executable, "-m", "anistar.cli", "check", "in.vtu"]
+    path = str(Path(anistar.__file__).parents[1])
+    closed = subprocess.Popen(
+        words,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": path},
+    )
+    closed.stdout.close()
+    said = closed.stderr.read()
+    closed.stderr.close()
+    assert closed.wait() == 1
+    assert said == b""

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..cell_arrays import cell_arrays
 from ..certificate import Certificate, certify
-from ..formats import read, read_metric, write
+from ..formats import ReadReport, read, read_metric, read_with_report, write
 from ..mesh import Mesh
 from ..metric import check_metric
 from ..quality import quality
@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; 1 if the mesh breaks a rule or a star is neither certified nor exempt."""
     _check_targets(arguments)
-    mesh, _ = read(arguments.input)
+    mesh, _, found = read_with_report(arguments.input)
     reference = read(arguments.reference)[0] if arguments.reference else None
     problems = validate(mesh, reference, tolerance=arguments.tolerance)
     M = certificate = None
@@ -60,7 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
         M = check_metric(read_metric(arguments.metric, mesh), dim=mesh.dim)
         certificate = certify(mesh, M) if mesh.dim == 2 else None
         _write(arguments, mesh, M, certificate)
-    _show(arguments, problems, quality(mesh, M).as_dict(), certificate)
+    _show(arguments, found, problems, quality(mesh, M).as_dict(), certificate)
     is_good = certificate is None or certificate.is_certified
     return 0 if is_good and not problems else 1
 
@@ -90,17 +90,19 @@ def _write(
 
 def _show(
     arguments: argparse.Namespace,
+    found: ReadReport,
     problems: list[Violation],
     figures: dict[str, Any],
     certificate: Certificate | None,
 ) -> None:
     if arguments.json:
-        report = {"valid": not problems, "problems": [p.message for p in problems], **figures}
+        said = {"valid": not problems, "problems": [p.message for p in problems], "read": found}
         if certificate is not None:
-            report["certificate"] = certificate.as_dict()
-        console.show_json(report)
+            said["certificate"] = certificate.as_dict()
+        console.show_json({**said, **figures})
         return
-    console.show_table(arguments.input, ["", ""], [[k, v] for k, v in figures.items()])
+    rows = [[name, value] for name, value in figures.items() if value is not None]
+    console.show_table(arguments.input, ["", ""], rows)
     for problem in problems:
         console.say(f"{problem.kind}: {problem.message}")
     console.say("not valid" if problems else "valid")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..errors import FormatError
 from ..formats import is_known
-from ..formats.suffixes import SOLUTIONS, suffix_of
+from ..formats.suffixes import SOLUTION_OF, SOLUTIONS, suffix_of
 
 
 def writable(path: str, *, is_mesh: bool = True) -> Path:
@@ -48,3 +48,18 @@ def writable_file(path: str) -> Path:
     if not os.access(target.parent, os.W_OK):
         raise FormatError(f"cannot write {target}: folder {target.parent} is not writable")
     return target
+
+
+def refuse_overlap(mesh_output: Path, metric_output: Path) -> None:
+    """Raise if the metric would be written over the mesh or its fields.
+
+    Raises
+    ------
+    ValueError
+        Names the path.
+    """
+    taken = {mesh_output, mesh_output.with_suffix(SOLUTION_OF.get(suffix_of(mesh_output), ""))}
+    if metric_output in taken:
+        raise ValueError(
+            f"the metric cannot go to {metric_output}: the mesh or its fields are written there"
+        )

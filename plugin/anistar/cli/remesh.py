@@ -61,12 +61,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         console.show_json(done.report)
     else:
-        columns = ["mesh", "points", "cells"]
         rows = [
             [arguments.input, mesh.n_points, mesh.n_cells],
             [arguments.output, done.mesh.n_points, done.mesh.n_cells],
         ]
-        console.show_table("remeshed", columns, rows)
+        console.show_remeshed("remeshed", rows, done.report)
         console.say(_certified(done.report))
     return 0
 

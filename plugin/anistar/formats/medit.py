@@ -139,9 +139,9 @@ def write_mesh(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
         _log.warning("%s: the binary medit format has no names, they are not written", path)
     with replaced(path) as temporary:
         gmf.save(temporary, container)
-    if fields:
-        write_solution(path.with_suffix(SOLUTION_OF[suffix_of(path)]), mesh, fields)
-    elif (stale := solution_beside(path)) is not None:
+        if fields:  # first, so that no new mesh is left with old fields when they fail
+            write_solution(path.with_suffix(SOLUTION_OF[suffix_of(path)]), mesh, fields)
+    if not fields and (stale := solution_beside(path)) is not None:
         _log.warning("%s: %s is left from before and will be read with it", path, stale.name)
 
 
