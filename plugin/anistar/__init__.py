@@ -2,13 +2,14 @@
 
 from . import metric
 from .adapt import Adapted, AdaptOptions, adapt
+from .certificate import Certificate, certify
 from .errors import FormatError, MeshingError
 from .fields import Field
 from .formats import read, write
 from .loop import Loop, LoopError, LoopOptions, Step, adapt_loop
 from .mesh import Mesh
 from .metric import MetricError, MetricOptions
-from .remesh import Remeshed, RemeshOptions, remesh
+from .remesh import ConsistencyOptions, Remeshed, RemeshOptions, remesh
 from .study import Study, convergence_study
 from .transfer import TransferOptions, Transferred, transfer
 from .validation import Violation, validate
@@ -16,6 +17,8 @@ from .validation import Violation, validate
 __all__ = [
     "AdaptOptions",
     "Adapted",
+    "Certificate",
+    "ConsistencyOptions",
     "Field",
     "FormatError",
     "Loop",
@@ -34,6 +37,7 @@ __all__ = [
     "Violation",
     "adapt",
     "adapt_loop",
+    "certify",
     "convergence_study",
     "metric",
     "read",

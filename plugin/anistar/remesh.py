@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +28,54 @@ UNLIMITED = 2**62
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ConsistencyOptions:
+    """Parameters of Algorithm 2, named as in Boissonnat, Wormser, Yvinec, RR-7712 v2.
+
+    Parameters
+    ----------
+    alpha_0 : float
+        Rule 1 refines a simplex whose circumradius is at least ``alpha_0 * sf``; the sizing
+        field sf is 1 in the metric, less where ``gamma_0`` asks for it. A unit equilateral
+        triangle has .577, so .95 leaves a quasi-unit mesh alone.
+    rho_0 : float
+        Rule 2: largest radius-edge ratio; above sqrt 2, the classical bound for termination.
+    sigma_0 : float
+        Rule 3: smallest sliverity. In 2D a triangle that passes rule 2 is never a sliver.
+    gamma_0 : float or None
+        Bound on the distortion within an element, through the sizing field. None, the
+        default, is off: measured, it only adds points.
+    delta : float
+        Radius of the picking region relative to the circumradius.
+    beta : float
+        New quasi-cospherical configurations count up to ``beta`` circumradii.
+    candidates : int
+        Points that pick_valid tries before it takes the best one.
+    max_growth : float
+        The run stops when it has added this fraction of vertices.
+    """
+
+    alpha_0: float = 0.95
+    rho_0: float = 1.5
+    sigma_0: float = 0.05
+    gamma_0: float | None = None
+    delta: float = 0.4
+    beta: float = 2.0
+    candidates: int = 16
+    max_growth: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("alpha_0", "rho_0", "sigma_0", "beta", "max_growth"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+        if not 0 < self.delta < 1:
+            raise ValueError(f"delta must be in (0, 1), got {self.delta}")
+        if self.gamma_0 is not None and not self.gamma_0 > 1:
+            raise ValueError(f"gamma_0 must be above 1, got {self.gamma_0}")
+        if self.candidates < 1:
+            raise ValueError(f"candidates must be at least 1, got {self.candidates}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RemeshOptions:
     """How to remesh; the metric itself is taken as it is given.
 
@@ -41,6 +89,20 @@ class RemeshOptions:
         Facets with these tags are kept as they are.
     ridge_angle : float
         Degrees; the boundary has a corner where it turns by at least this.
+    agreement : bool or "auto"
+        Move vertices until the stars of the mesh agree, so that `certify` finds every star
+        Delaunay in its own metric. "auto" does so when the metric varies slowly enough from
+        vertex to vertex for that to succeed; ``report.agreement`` says what was decided.
+    until_consistent : bool or "pure"
+        After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
+        star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.
+        "pure" starts from the boundary alone and runs only that algorithm.
+    consistency : ConsistencyOptions
+        Its parameters.
+    seed : int
+        Of the random moves in the agreement phase.
+    threads : int
+        For the certificate; the result does not depend on it.
     hausdorff_number : float
         Distance of a curve from an edge along it, relative to the edge's length; longer edges
         are split whatever the metric says.
@@ -53,6 +115,11 @@ class RemeshOptions:
     frozen_tags: Sequence[int] = ()
     ridge_angle: float = 45.0
     hausdorff_number: float = 0.1
+    agreement: bool | Literal["auto"] = "auto"
+    until_consistent: bool | Literal["pure"] = False
+    consistency: ConsistencyOptions = field(default_factory=ConsistencyOptions)
+    seed: int = 0
+    threads: int = 1
     callback: Callback | None = None
 
     def __post_init__(self) -> None:
@@ -64,6 +131,16 @@ class RemeshOptions:
             raise ValueError(f"ridge_angle must be in (0, 180] degrees, got {self.ridge_angle}")
         if not 0 < self.hausdorff_number <= 1:
             raise ValueError(f"hausdorff_number must be in (0, 1], got {self.hausdorff_number}")
+        if not (isinstance(self.agreement, bool) or self.agreement == "auto"):
+            raise ValueError(f'agreement must be True, False or "auto", got {self.agreement!r}')
+        if not (isinstance(self.until_consistent, bool) or self.until_consistent == "pure"):
+            raise ValueError(
+                f'until_consistent must be True, False or "pure", got {self.until_consistent!r}'
+            )
+        if not 0 <= self.seed < 2**64:
+            raise ValueError(f"seed must be in [0, 2**64), got {self.seed}")
+        if not 1 <= self.threads <= 256:
+            raise ValueError(f"threads must be in [1, 256], got {self.threads}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,6 +175,16 @@ class RemeshReport:
         ``edge_unit`` (fraction of edges within [1/sqrt 2, sqrt 2]), ``edge_min``, ``edge_mean``,
         ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
         ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
+    agreement : str
+        ``done``, ``off``, or ``skipped: `` and why.
+    consistency : dict
+        Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
+        ``inconsistency``, ``boundary``), ``rounds`` and ``stop_reason``.
+    simplex_ok, star_ok : float or None
+        Certified fractions of the cells and of the stars (see `certify`); None when the
+        agreement phase was off.
+    distortion : dict of str to float
+        Quantiles of ln gamma, the distortion of the metric along the edges.
     tags : tuple of TagMeasure
         Measure of every facet and region tag against the geometry.
     counts : dict of str to float
@@ -111,6 +198,11 @@ class RemeshReport:
     n_points: int
     n_cells: int
     statistics: dict[str, Any]
+    agreement: str
+    consistency: dict[str, Any]
+    simplex_ok: float | None
+    star_ok: float | None
+    distortion: dict[str, float]
     tags: tuple[TagMeasure, ...]
     counts: dict[str, float]
     seconds: dict[str, float]
@@ -201,6 +293,11 @@ def remesh(
             options.hausdorff_number,
             UNLIMITED if options.max_vertices is None else options.max_vertices,
             np.inf if options.max_seconds is None else options.max_seconds,
+            {True: "on", False: "off", "auto": "auto"}[options.agreement],
+            {True: "on", False: "off", "pure": "pure"}[options.until_consistent],
+            {**asdict(options.consistency), "gamma_0": options.consistency.gamma_0 or np.inf},
+            options.seed,
+            options.threads,
             None if project is None else _pointwise(project),
             options.callback,
         )
@@ -221,6 +318,11 @@ def remesh(
         n_points=new.n_points,
         n_cells=new.n_cells,
         statistics=raw["statistics"],
+        agreement=raw["agreement"],
+        consistency=raw["consistency"],
+        simplex_ok=raw["simplex_ok"],
+        star_ok=raw["star_ok"],
+        distortion=raw["distortion"],
         tags=_tag_measures(geometry, new),
         counts=raw["counts"],
         seconds=raw["seconds"],

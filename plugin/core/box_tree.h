@@ -52,9 +52,13 @@ public:
       descend_meeting(0, query, visit);
   }
 
+  /// Enlarges the box of an item.
+  void extend(Index item, const Vector<d> &p);
+
 private:
   static constexpr std::size_t leaf_size = 4;
   std::vector<Index> items_;
+  std::vector<Index> position_; ///< of every item in items_; empty until one is extended
   std::vector<Box<d>> item_boxes_;
   std::vector<Box<d>> nodes_;
   std::size_t first_leaf_ = 0;

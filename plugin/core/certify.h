@@ -2,6 +2,7 @@
 // The certificate of a mesh for the metric at its vertices.
 
 #include "certificate.h"
+#include "statistics.h"
 
 namespace anistar {
 
@@ -15,9 +16,9 @@ struct CertificateResult {
   std::vector<std::uint8_t> exempt;
   /// Stars that pass also when the walk crosses interfaces (not the boundary).
   std::size_t stars_without_interfaces = 0;
-  /// The paper's restricted stars: cells whose circumcentre lies in the domain for the
-  /// metric of one vertex at least (v2, section 3) or of all of them (v1, section 3),
-  /// and how many of these are in the stars of all vertices for which they count.
+  /// Cells whose circumcentre lies in the domain for the metric of one vertex at least
+  /// (RR-7712 v2, section 3) or of all of them (v1, section 3), and how many of these
+  /// are in the restricted stars of all their vertices.
   std::size_t restricted_v2 = 0, restricted_v2_ok = 0;
   std::size_t restricted_v1 = 0, restricted_v1_ok = 0;
 };
@@ -32,10 +33,5 @@ struct CertificateResult {
 [[nodiscard]] std::vector<std::array<Index, 3>> walls(std::span<const Cell<2>> cells,
                                                       std::span<const Facet<2>> facets,
                                                       std::size_t n_points);
-
-/// gamma(M, N) = max(|F_M^-1 F_N|, |F_N^-1 F_M|), the distortion between two metrics
-/// (RR-7712 v2, section 2).
-[[nodiscard]] double distortion(const SymmetricTensor<2> &M,
-                                const SymmetricTensor<2> &N);
 
 } // namespace anistar

@@ -40,6 +40,10 @@ public:
   bool is_loop = false; ///< closed, without a corner
 
   [[nodiscard]] std::size_t n_segments() const { return vertices.size() - 1; }
+  /// The domain lies on one side only.
+  [[nodiscard]] bool is_boundary() const {
+    return left == no_region || right == no_region;
+  }
 
   /// The point at parameter t: segment floor(t), fraction t - floor(t).
   [[nodiscard]] Vector<2> at(double t) const;

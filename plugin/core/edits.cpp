@@ -140,6 +140,11 @@ Index split_edge(Workspace &w, HalfFacet edge) {
   w.cavity.add(edge.cell());
   if (other.exists())
     w.cavity.add(other.cell());
+  const Index record = mesh.constraint(edge);
+  if (is_constrained && !w.walls.is_clear(w.curve(whole), mesh.vertex(whole.v0).x,
+                                          whole.v0, mesh.vertex(whole.v1).x, whole.v1,
+                                          x, {&record, 1}))
+    return none;
   if (!grow_to_see(mesh, w.cavity, none, skipped, x))
     return none;
   Index cell = mesh.background_cell[static_cast<std::size_t>(a)];
@@ -154,6 +159,9 @@ Index split_edge(Workspace &w, HalfFacet edge) {
   const auto first = static_cast<Index>(table.size());
   table.push_back({whole.curve, whole.t0, t, whole.v0, v});
   table.push_back({whole.curve, t, whole.t1, v, whole.v1});
+  w.walls.add(first, record);
+  w.walls.add(first + 1, record);
+  w.walls.remove(record);
   const RidgeConstraint<2> ridges[2] = {{{whole.v0}, first}, {{whole.v1}, first + 1}};
   w.cavity.fill(v, ridges);
   return v;
@@ -178,8 +186,17 @@ bool bound_collapse(Workspace &w, Collapse &collapse) {
     if (in.v0 == out.v1 || w.curve(in).is_frozen ||
         relative_sagitta(w.curve(in), in.t0, out.t1) > w.hausdorff)
       return false;
+    collapse.halves = {mesh.constraint(at.into), mesh.constraint(at.out_of)};
+    if (!w.walls.is_clear(w.curve(in), mesh.vertex(in.v0).x, in.v0, mesh.vertex(v).x, v,
+                          mesh.vertex(out.v1).x, collapse.halves))
+      return false;
     collapse.merged = {in.curve, in.t0, out.t1, in.v0, out.v1};
     const Index far = collapse.target == in.v0 ? out.v1 : in.v0;
+    for (HalfFacet h : collapse.star) {
+      const auto [a, b] = mesh.facet(h);
+      if (mesh.constraint(h) != none && std::minmax(a, b) == std::minmax(in.v0, out.v1))
+        return false; // another curve runs there
+    }
     collapse.ridges.push_back({{far}, none});
     for (HalfFacet edge : {at.into, at.out_of})
       if (!mesh.opposite(edge).exists())
@@ -198,9 +215,20 @@ void fill_collapse(Workspace &w, Collapse &collapse) {
     collapse.ridges.front().constraint =
         static_cast<Index>(w.on_curves.curve_edges.size());
     w.on_curves.curve_edges.push_back(collapse.merged);
+    w.walls.add(collapse.ridges.front().constraint, collapse.halves[0]);
+    for (Index gone : collapse.halves)
+      w.walls.remove(gone);
   }
   w.cavity.fill(collapse.target, collapse.ridges);
   w.mesh.vertex_cell[static_cast<std::size_t>(collapse.vertex)] = none;
+}
+
+void renumber(Workspace &w) {
+  const std::vector<Index> rank = sort_along_curve(w.mesh);
+  for (CurveEdge &edge : w.on_curves.curve_edges) {
+    edge.v0 = rank[static_cast<std::size_t>(edge.v0)];
+    edge.v1 = rank[static_cast<std::size_t>(edge.v1)];
+  }
 }
 
 } // namespace anistar

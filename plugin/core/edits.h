@@ -5,6 +5,7 @@
 #include "cavity.h"
 #include "curves.h"
 #include "start.h"
+#include "walls.h"
 
 namespace anistar {
 
@@ -16,6 +17,7 @@ struct Workspace {
   double hausdorff;
   Triangulation<2> &mesh = on_curves.mesh;
   Cavity<2> cavity{mesh};
+  Walls walls{mesh, on_curves.curve_edges, geometry};
 
   [[nodiscard]] const CurveEdge &curve_edge(HalfFacet h) const {
     return on_curves.curve_edges[static_cast<std::size_t>(mesh.constraint(h))];
@@ -57,8 +59,12 @@ struct Collapse {
   std::vector<HalfFacet> skipped;         ///< boundary edges that vanish
   std::vector<RidgeConstraint<2>> ridges; ///< the merged curve edge
   CurveEdge merged{};                     ///< valid when ridges is not empty
+  std::array<Index, 2> halves{};          ///< the curve edges that merge
 };
 [[nodiscard]] bool bound_collapse(Workspace &w, Collapse &collapse);
 void fill_collapse(Workspace &w, Collapse &collapse);
+
+/// Sorts the mesh along a Hilbert curve and tells the curve edges.
+void renumber(Workspace &w);
 
 } // namespace anistar

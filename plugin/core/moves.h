@@ -34,7 +34,8 @@ public:
   [[nodiscard]] double room_before() const { return in().t1 - in().t0; }
   [[nodiscard]] double room_after() const { return out().t1 - out().t0; }
   [[nodiscard]] Vector<2> at(double dt) const;
-  /// The two edges keep to the curve within the Hausdorff bound.
+  /// The two edges keep to the curve within the Hausdorff bound and meet no other part
+  /// of the boundary. @pre v is where in().t1 says.
   [[nodiscard]] bool may_slide(double dt) const;
   /// Tells the curve edges; the caller moves the vertex.
   void commit(double dt) const;
@@ -43,6 +44,7 @@ private:
   Workspace &w_;
   Index in_ = none, out_ = none; ///< entries of the table of curve edges
 
+  [[nodiscard]] bool is_clear(const Vector<2> &x) const;
   [[nodiscard]] CurveEdge &edge(Index k) const {
     return w_.on_curves.curve_edges[static_cast<std::size_t>(k)];
   }

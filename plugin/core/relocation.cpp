@@ -50,9 +50,13 @@ bool disagrees(const Triangulation<2> &mesh, HalfFacet edge) {
   const HalfFacet other = mesh.opposite(edge);
   if (!other.exists() || mesh.constraint(edge) != none)
     return false;
-  const auto [ia, ib] = mesh.facet(edge);
-  const Vertex<2> &a = mesh.vertex(ia), &b = mesh.vertex(ib);
-  const Vertex<2> &c = mesh.vertex(mesh.apex(edge)), &e = mesh.vertex(mesh.apex(other));
+  const auto [a, b] = mesh.facet(edge);
+  return metrics_disagree(mesh.vertex(a), mesh.vertex(b), mesh.vertex(mesh.apex(edge)),
+                          mesh.vertex(mesh.apex(other)));
+}
+
+bool metrics_disagree(const Vertex<2> &a, const Vertex<2> &b, const Vertex<2> &c,
+                      const Vertex<2> &e) {
   // det = <M, K> with K = sum_i cof_i x_i x_i^T, and <|M|, S> bounds its terms
   const Vector<2> x[3] = {a.x - e.x, b.x - e.x, c.x - e.x};
   double K[3] = {0, 0, 0}, S[3] = {0, 0, 0};

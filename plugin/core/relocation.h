@@ -11,6 +11,10 @@ namespace anistar {
 /// linear in the metric, so one coefficient vector serves all four).
 [[nodiscard]] bool disagrees(const Triangulation<2> &mesh, HalfFacet edge);
 
+/// The same for the edge ab with c on its left and e on its right.
+[[nodiscard]] bool metrics_disagree(const Vertex<2> &a, const Vertex<2> &b,
+                                    const Vertex<2> &c, const Vertex<2> &e);
+
 /// What a star is judged by when its vertex is moved for agreement.
 struct StarScore {
   int disagreeing = 0; ///< edges of the star and of its link

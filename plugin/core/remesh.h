@@ -1,6 +1,7 @@
 #pragma once
 // remesh: a mesh, a metric field, and a geometry in; a mesh with unit edges out.
 
+#include "consistency.h"
 #include "curves.h"
 #include "monitor.h"
 #include "shape.h"
@@ -11,7 +12,18 @@
 
 namespace anistar {
 
+/// Whether vertices are moved until the stars agree. `when_possible` asks the metric:
+/// it must not vary too fast from vertex to vertex.
+enum class AgreementMode { off, when_possible, on };
+
+/// Whether points are inserted until every star agrees; `pure` starts from the boundary
+/// alone and applies nothing but the rules of the paper.
+enum class ConsistencyMode { off, on, pure };
+
 struct RemeshSettings {
+  ConsistencyMode consistency = ConsistencyMode::off;
+  ConsistencyParameters parameters{};
+  AgreementMode agreement = AgreementMode::when_possible;
   double hausdorff_number = .1; ///< of an edge, relative to its length
   std::size_t max_vertices = static_cast<std::size_t>(-1);
   double max_seconds = std::numeric_limits<double>::infinity();
@@ -27,7 +39,11 @@ struct RemeshResult {
   std::vector<Facet<2>> facets;
   std::vector<Index> facet_tags;
   Statistics statistics;
+  DistortionQuantiles distortion;
+  bool was_checked = false;           ///< the certified fractions are known
   double simplex_ok = 0, star_ok = 0; ///< certified fractions
+  std::string agreement;              ///< done, or why not
+  ConsistencyCounts consistency;
   std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase
   StopReason reason = StopReason::finished;

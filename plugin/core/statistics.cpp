@@ -46,4 +46,35 @@ Statistics measure(std::span<const Vertex<2>> vertices,
   return out;
 }
 
+double distortion(const SymmetricTensor<2> &M, const SymmetricTensor<2> &N) {
+  const double det = determinant<2>(M);
+  // trace and determinant of M^-1 N; its eigenvalues are positive
+  const double trace =
+      (M(1, 1) * N(0, 0) - 2 * M(0, 1) * N(0, 1) + M(0, 0) * N(1, 1)) / det;
+  const double product = determinant<2>(N) / det;
+  const double large =
+      .5 * trace + std::sqrt(std::max(0., .25 * trace * trace - product));
+  return std::sqrt(std::max(large, large / product));
+}
+
+DistortionQuantiles distortion_quantiles(std::span<const Vertex<2>> vertices,
+                                         std::span<const Cell<2>> cells) {
+  std::vector<double> values;
+  values.reserve(3 * cells.size());
+  for (const Cell<2> &cell : cells)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [a, b] = facet_of<2>(cell, i); // interior edges count twice
+      values.push_back(std::log(distortion(vertices[static_cast<std::size_t>(a)].M,
+                                           vertices[static_cast<std::size_t>(b)].M)));
+    }
+  const auto quantile = [&](double q) {
+    const auto k = static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + k, values.end());
+    return values[static_cast<std::size_t>(k)];
+  };
+  if (values.empty())
+    return {};
+  return {quantile(.5), quantile(.9), quantile(.99), quantile(1)};
+}
+
 } // namespace anistar

@@ -26,4 +26,18 @@ struct Statistics {
 [[nodiscard]] Statistics measure(std::span<const Vertex<2>> vertices,
                                  std::span<const Cell<2>> cells);
 
+/// Quantiles of ln gamma, the logarithm of the distortion between the metrics at the
+/// two ends of an edge: what decides whether stars can agree.
+struct DistortionQuantiles {
+  double p50 = 0, p90 = 0, p99 = 0, maximum = 0;
+};
+[[nodiscard]] DistortionQuantiles
+distortion_quantiles(std::span<const Vertex<2>> vertices,
+                     std::span<const Cell<2>> cells);
+
+/// gamma(M, N) = max(|F_M^-1 F_N|, |F_N^-1 F_M|), the distortion between two metrics
+/// (RR-7712 v2, section 2).
+[[nodiscard]] double distortion(const SymmetricTensor<2> &M,
+                                const SymmetricTensor<2> &N);
+
 } // namespace anistar

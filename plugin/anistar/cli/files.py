@@ -16,8 +16,25 @@ def writable(path: str, *, is_mesh: bool = True) -> Path:
     Raises
     ------
     FormatError
-        If the folder does not exist or cannot be written, the path is a folder, no format has
-        its suffix, or the format holds no mesh although `is_mesh`.
+        If nothing can be created there, no format has the suffix, or the format holds no mesh
+        although `is_mesh`.
+    """
+    target = creatable(path)
+    if not is_known(target):
+        raise FormatError(f"cannot write {target}: no format has the suffix {target.suffix!r}")
+    if is_mesh and suffix_of(target) in SOLUTIONS:
+        raise FormatError(f"cannot write {target}: a solution file holds no mesh")
+    return target
+
+
+def creatable(path: str) -> Path:
+    """Return the output path of any kind of file, checked before anything is computed.
+
+    Raises
+    ------
+    FormatError
+        If the folder does not exist or cannot be written, the path is a folder, or it has no
+        suffix.
     """
     target = Path(path)
     if target.is_dir():
@@ -26,10 +43,6 @@ def writable(path: str, *, is_mesh: bool = True) -> Path:
         raise FormatError(
             f"cannot write {target}: the suffix, which chooses the format, is missing"
         )
-    if not is_known(target):
-        raise FormatError(f"cannot write {target}: no format has the suffix {target.suffix!r}")
-    if is_mesh and suffix_of(target) in SOLUTIONS:
-        raise FormatError(f"cannot write {target}: a solution file holds no mesh")
     if not target.parent.is_dir():
         raise FormatError(f"cannot write {target}: no such folder {target.parent}")
     if not os.access(target.parent, os.W_OK):
@@ -37,16 +50,24 @@ def writable(path: str, *, is_mesh: bool = True) -> Path:
     return target
 
 
-def refuse_overlap(mesh_output: Path, metric_output: Path) -> None:
-    """Raise if the metric would be written over the mesh or its fields.
+def metric_target(path: str | None, mesh_output: Path) -> Path | None:
+    """Return the checked path of the metric, if there is one.
 
     Raises
     ------
+    FormatError
+        If the path cannot be written.
     ValueError
-        Names the path.
+        If the mesh or its fields are written there.
     """
-    taken = {mesh_output, mesh_output.with_suffix(SOLUTION_OF.get(suffix_of(mesh_output), ""))}
-    if metric_output in taken:
+    if not path:
+        return None
+    target = writable(path, is_mesh=False)
+    if target in (
+        mesh_output,
+        mesh_output.with_suffix(SOLUTION_OF.get(suffix_of(mesh_output), "")),
+    ):
         raise ValueError(
-            f"the metric cannot go to {metric_output}: the mesh or its fields are written there"
+            f"the metric cannot go to {target}: the mesh or its fields are written there"
         )
+    return target

@@ -57,6 +57,23 @@ _METRIC: dict[str, tuple[Any, str]] = {
     "gradation_model": (str, "physical, metric or mixed"),
     "method": (str, "recovery of the Hessian: auto, quadratic or l2"),
 }
+
+
+def _agreement(text: str) -> bool | str:
+    """Parse the flag of the agreement phase."""
+    known: dict[str, bool | str] = {"auto": "auto", "on": True, "off": False}
+    if text not in known:
+        raise argparse.ArgumentTypeError(f"must be auto, on or off, not {text!r}")
+    return known[text]
+
+
+def _until_consistent(text: str) -> bool | str:
+    """Parse the value of the flag of Algorithm 2."""
+    if text != "pure":
+        raise argparse.ArgumentTypeError(f"must be pure or nothing, not {text!r}")
+    return text
+
+
 _REMESH: dict[str, tuple[Any, str]] = {
     "hausdorff_number": (
         float,
@@ -66,7 +83,18 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "max_vertices": (int, "stop at this number of vertices"),
     "max_seconds": (float, "stop after this time"),
     "frozen_tags": (_integers, "facet tags that are kept as they are, comma-separated"),
+    "agreement": (_agreement, "move vertices until the stars agree: auto, on or off"),
+    "until_consistent": (
+        _until_consistent,
+        "then insert points until every star is Delaunay in its own metric; "
+        "pure: only that, from the boundary alone",
+    ),
+    "seed": (int, "of the random moves"),
+    "threads": (int, "for the certificate"),
 }
+
+_OPTIONAL_VALUE = {"until_consistent": True}
+"""Flags that may stand alone, and what they then mean."""
 
 
 def add_metric_options(parser: argparse.ArgumentParser) -> None:
@@ -119,6 +147,7 @@ def _add(group: argparse._ArgumentGroup, table: dict[str, tuple[Any, str]]) -> N
             dest=name,
             type=kind,
             default=argparse.SUPPRESS,
+            **({"nargs": "?", "const": _OPTIONAL_VALUE[name]} if name in _OPTIONAL_VALUE else {}),
             metavar="X" if kind is not str else "NAME",
             help=text,
         )

@@ -6,12 +6,13 @@ import argparse
 from pathlib import Path
 
 from ..errors import FormatError
-from ..formats import read, read_metric, write
-from ..formats.suffixes import solution_beside
-from ..remesh import remesh
+from ..fields import Field
+from ..formats import METRIC, read, read_metric, write, write_metric
+from ..formats.suffixes import SOLUTION_OF, solution_beside, suffix_of
+from ..remesh import RemeshReport, remesh
 from ..transfer import transfer
 from . import console
-from .files import writable
+from .files import metric_target, writable
 from .options import adapt_options, add_remesh_options
 
 SUMMARY = "remesh to a given metric, and carry the fields over"
@@ -27,6 +28,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="tensors, or sizes, at the points; for in.mesh the default is in.sol",
     )
+    parser.add_argument(
+        "--metric-output",
+        metavar="FILE",
+        help="metric at the new points; for out.mesh without fields it goes to out.sol anyway",
+    )
     parser.add_argument("--geometry", metavar="FILE", help="mesh whose boundary is the geometry")
     add_remesh_options(parser)
 
@@ -34,6 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output)
+    metric_output = metric_target(arguments.metric_output, output)
     options = adapt_options(arguments)
     beside = solution_beside(Path(arguments.input))
     source = Path(arguments.metric) if arguments.metric else beside
@@ -45,7 +52,12 @@ def run(arguments: argparse.Namespace) -> int:
     done = remesh(mesh, M, options.remesh, geometry=geometry)
     # The solution beside a medit mesh is the metric itself, not a field to carry.
     carried = {} if source == beside else fields
-    write(output, done.mesh, transfer(mesh, carried, done.mesh, options.transfer).fields)
+    fields = transfer(mesh, carried, done.mesh, options.transfer).fields
+    if metric_output is None and not fields and suffix_of(output) in SOLUTION_OF:
+        fields = {METRIC: Field(done.metric)}
+    write(output, done.mesh, fields)
+    if metric_output is not None:
+        write_metric(metric_output, done.mesh, done.metric)
     if arguments.json:
         console.show_json(done.report)
     else:
@@ -54,4 +66,14 @@ def run(arguments: argparse.Namespace) -> int:
             [arguments.output, done.mesh.n_points, done.mesh.n_cells],
         ]
         console.show_remeshed("remeshed", rows, done.report)
+        console.say(_certified(done.report))
     return 0
+
+
+def _certified(report: RemeshReport) -> str:
+    if report.star_ok is None or report.simplex_ok is None:
+        return "agreement off: the stars were not checked"
+    return (
+        f"{100 * report.star_ok:.2f} % of the stars and {100 * report.simplex_ok:.2f} % of the "
+        f"simplices are certified; agreement {report.agreement}"
+    )

@@ -65,6 +65,50 @@ Projection projection_of(nb::handle project) {
   };
 }
 
+ConsistencyMode consistency_mode(const std::string &name) {
+  if (name == "off")
+    return ConsistencyMode::off;
+  if (name == "on")
+    return ConsistencyMode::on;
+  if (name == "pure")
+    return ConsistencyMode::pure;
+  throw std::invalid_argument("unknown consistency mode '" + name + "'");
+}
+
+[[nodiscard]] ConsistencyParameters parameters_of(const nb::dict &given) {
+  const auto value = [&](const char *name) { return nb::cast<double>(given[name]); };
+  return {value("alpha_0"),
+          value("rho_0"),
+          value("sigma_0"),
+          value("gamma_0"),
+          value("delta"),
+          value("beta"),
+          nb::cast<int>(given["candidates"]),
+          value("max_growth")};
+}
+
+[[nodiscard]] nb::dict as_dict(const ConsistencyCounts &counts) {
+  nb::dict out;
+  out["size"] = counts.size;
+  out["radius_edge"] = counts.radius_edge;
+  out["sliver"] = counts.sliver;
+  out["inconsistency"] = counts.inconsistency;
+  out["boundary"] = counts.boundary;
+  out["rounds"] = counts.rounds;
+  out["stop_reason"] = counts.stop;
+  return out;
+}
+
+AgreementMode agreement_mode(const std::string &name) {
+  if (name == "off")
+    return AgreementMode::off;
+  if (name == "auto")
+    return AgreementMode::when_possible;
+  if (name == "on")
+    return AgreementMode::on;
+  throw std::invalid_argument("unknown agreement mode '" + name + "'");
+}
+
 nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
                  const Array3<double> &metric, const Array2<double> &geometry_points,
                  const Array2<Index> &geometry_cells,
@@ -73,6 +117,8 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
                  const Array1<Index> &geometry_facet_tags, const Array1<Index> &corners,
                  const Array1<Index> &frozen_tags, double ridge_angle,
                  double hausdorff_number, std::size_t max_vertices, double max_seconds,
+                 const std::string &agreement, const std::string &consistency,
+                 const nb::dict &parameters, std::uint64_t seed, int threads,
                  const nb::object &project, const nb::object &callback) {
   const auto tensors = tensors_of<2>(metric);
   const GeometryInput geometry{
@@ -84,6 +130,11 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
   settings.hausdorff_number = hausdorff_number;
   settings.max_vertices = max_vertices;
   settings.max_seconds = max_seconds;
+  settings.agreement = agreement_mode(agreement);
+  settings.consistency = consistency_mode(consistency);
+  settings.parameters = parameters_of(parameters);
+  settings.seed = seed;
+  settings.threads = threads;
   const Projection projection = projection_of(project);
   RemeshResult out;
   {
@@ -97,8 +148,21 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
   result["cell_tags"] = owned(std::move(out.cell_tags), {out.cells.size()});
   result["facets"] = rows<Index, 2>(out.facets);
   result["facet_tags"] = owned(std::move(out.facet_tags), {out.facets.size()});
-  result["simplex_ok"] = out.simplex_ok;
-  result["star_ok"] = out.star_ok;
+  if (out.was_checked) {
+    result["simplex_ok"] = out.simplex_ok;
+    result["star_ok"] = out.star_ok;
+  } else {
+    result["simplex_ok"] = nb::none();
+    result["star_ok"] = nb::none();
+  }
+  result["agreement"] = out.agreement;
+  result["consistency"] = as_dict(out.consistency);
+  nb::dict quantiles;
+  quantiles["p50"] = out.distortion.p50;
+  quantiles["p90"] = out.distortion.p90;
+  quantiles["p99"] = out.distortion.p99;
+  quantiles["max"] = out.distortion.maximum;
+  result["distortion"] = quantiles;
   result["statistics"] = as_dict(out.statistics);
   result["counts"] = out.counts;
   result["seconds"] = out.seconds;
@@ -118,7 +182,9 @@ void bind_remesh(nb::module_ &module) {
       nb::arg("geometry_facet_tags").noconvert(), nb::arg("corners").noconvert(),
       nb::arg("frozen_tags").noconvert(), nb::arg("ridge_angle"),
       nb::arg("hausdorff_number"), nb::arg("max_vertices"), nb::arg("max_seconds"),
-      nb::arg("project").none(), nb::arg("callback").none(),
+      nb::arg("agreement"), nb::arg("consistency"), nb::arg("parameters"),
+      nb::arg("seed"), nb::arg("threads"), nb::arg("project").none(),
+      nb::arg("callback").none(),
       "A mesh of the geometry with unit edges in the metric that the mesh "
       "(points, cells) carries.");
 }

@@ -1,0 +1,377 @@
+#include "consistency.h"
+
+#include "relocation.h"
+#include "statistics.h"
+
+#include <cmath>
+#include <utility>
+
+namespace anistar {
+namespace {
+
+constexpr int max_rounds = 80;
+/// Rounds without fewer failing cells after which the run has stalled.
+constexpr int patience = 12;
+/// Vertices are moved after every round when fewer than this fraction of cells fails,
+/// else now and then.
+constexpr double few_failing = .02;
+constexpr int rounds_between_moves = 4;
+/// New vertices keep this distance from the others in their own metric (packing).
+constexpr double separation = .4;
+/// Encroached edges shorter than this are not split.
+constexpr double shortest_split = .8;
+
+enum class Rule { none, size, radius_edge, sliver, inconsistency };
+
+struct Ball {
+  Vector<2> centre;
+  double radius;
+};
+
+Ball circumball(const SymmetricTensor<2> &M, const Simplex<2> &s) {
+  const Vector<2> u = s[1] - s[0], v = s[2] - s[0];
+  const double area = cross(u, v), det = determinant<2>(M);
+  const double uu = quadratic<2>(M, u), vv = quadratic<2>(M, v);
+  const double gx = (uu * v[1] - vv * u[1]) / (2 * area);
+  const double gy = (vv * u[0] - uu * v[0]) / (2 * area);
+  const Vector<2> r((M(1, 1) * gx - M(0, 1) * gy) / det,
+                    (M(0, 0) * gy - M(0, 1) * gx) / det);
+  return {s[0] + r, std::sqrt(std::max(0., r[0] * gx + r[1] * gy))};
+}
+
+double shortest_edge(const SymmetricTensor<2> &M, const Simplex<2> &s) {
+  return std::sqrt(std::min({quadratic<2>(M, s[1] - s[0]), quadratic<2>(M, s[2] - s[1]),
+                             quadratic<2>(M, s[0] - s[2])}));
+}
+
+/// (Vol / e^d)^(1/d), the sliverity ratio of section 3.2.
+template <std::size_t d> double sliverity(double volume, double shortest) {
+  return std::pow(volume, 1. / d) / shortest;
+}
+
+/// A bad cell, the rule that it breaks and the vertex in whose star it is bad.
+struct BadCell {
+  Index cell;
+  Cell<2> vertices;
+  Rule rule;
+  Index star;
+};
+
+class Rounds {
+public:
+  Rounds(Workspace &w, const ConsistencyParameters &parameters, std::uint64_t seed,
+         bool everywhere, ConsistencyCounts &counts)
+      : w_(w), mesh_(w.mesh), parameters_(parameters), seed_(seed),
+        everywhere_(everywhere), counts_(counts) {}
+
+  /// The cells that break a rule, those of the first rule first.
+  [[nodiscard]] std::vector<BadCell>
+  bad_cells(const std::vector<std::uint8_t> &bits) const {
+    std::vector<BadCell> bad;
+    for (std::size_t c = 0; c < mesh_.cells.size(); ++c) {
+      const BadCell found = judge(static_cast<Index>(c), bits[c]);
+      if (found.rule != Rule::none)
+        bad.push_back(found);
+    }
+    std::stable_sort(bad.begin(), bad.end(), [](const BadCell &a, const BadCell &b) {
+      return a.rule < b.rule;
+    });
+    return bad;
+  }
+
+  /// One point for each bad cell that shares no vertex with one treated before, of the
+  /// first rule that can place any. @returns that rule, `none` when no rule can.
+  Rule treat(const std::vector<BadCell> &bad, int round) {
+    std::vector<bool> touched(mesh_.vertices.size(), false);
+    const std::size_t before = mesh_.vertices.size();
+    Rule acting = Rule::none;
+    for (const BadCell &item : bad) {
+      if (item.rule != acting && mesh_.vertices.size() > before)
+        break;
+      acting = item.rule;
+      if (mesh_.at(item.cell) != item.vertices ||
+          std::any_of(item.vertices.begin(), item.vertices.end(),
+                      [&](Index v) { return touched[static_cast<std::size_t>(v)]; }))
+        continue;
+      for (Index v : item.vertices)
+        touched[static_cast<std::size_t>(v)] = true;
+      insert_for(item, round);
+    }
+    return mesh_.vertices.size() > before ? acting : Rule::none;
+  }
+
+private:
+  Workspace &w_;
+  Triangulation<2> &mesh_;
+  const ConsistencyParameters &parameters_;
+  std::uint64_t seed_;
+  bool everywhere_; ///< rules 1 to 3 also for cells that are consistent
+  ConsistencyCounts &counts_;
+  std::vector<std::pair<Index, HalfFacet>> ring_;
+
+  [[nodiscard]] BadCell judge(Index c, std::uint8_t bits) const {
+    const Cell<2> &cell = mesh_.at(c);
+    const Simplex<2> s = mesh_.simplex(c);
+    BadCell out{c, cell, Rule::none, none};
+    if (bits == all_vertices && !everywhere_)
+      return out;
+    const auto worsen = [&](Rule rule, Index star) {
+      if (out.rule == Rule::none || rule < out.rule) {
+        out.rule = rule;
+        out.star = star;
+      }
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (bits != 0 && (bits >> k & 1) == 0)
+        continue; // not in this star, but in another one
+      const Vertex<2> &v = mesh_.vertex(cell[k]);
+      const Ball ball = circumball(v.M, s);
+      const double shortest = shortest_edge(v.M, s);
+      const double volume = .5 * cross(s[1] - s[0], s[2] - s[0]) / v.weight;
+      const double rho = ball.radius / shortest;
+      if (ball.radius >= parameters_.alpha_0 * size_at(ball, cell[k]))
+        worsen(Rule::size, cell[k]);
+      else if (rho > parameters_.rho_0)
+        worsen(Rule::radius_edge, cell[k]);
+      else if (sliverity<2>(volume, shortest) < parameters_.sigma_0)
+        worsen(Rule::sliver, cell[k]);
+      else if (bits != all_vertices)
+        worsen(Rule::inconsistency, cell[k]);
+    }
+    return out;
+  }
+
+  /// The sizing field: one, the unit of the metric, or the bounded distortion radius
+  /// where that is smaller (Definition 2.2).
+  [[nodiscard]] double size_at(const Ball &ball, Index v) const {
+    if (std::isinf(parameters_.gamma_0))
+      return 1;
+    Index cell = mesh_.background_cell[static_cast<std::size_t>(v)];
+    const Vertex<2> centre = w_.background.vertex(ball.centre, cell);
+    return std::min(1., bounded_distortion_radius(w_.background, centre, cell,
+                                                  parameters_.gamma_0));
+  }
+
+  void insert_for(const BadCell &item, int round) {
+    const SymmetricTensor<2> M = mesh_.vertex(item.star).M;
+    const Ball ball = circumball(M, mesh_.simplex(item.cell));
+    const EllipseSampler ellipse(M);
+    CounterRandom random(seed_ + 2, static_cast<std::uint64_t>(item.cell),
+                         static_cast<std::uint64_t>(round));
+    // rule 1 inserts the circumcentre itself, the others a point of the picking region
+    const int n = item.rule == Rule::size ? 1 : parameters_.candidates;
+    int fewest = std::numeric_limits<int>::max();
+    Vertex<2> best;
+    Index best_cell = none, best_hint = none;
+    HalfFacet wall;
+    for (int k = 0; k < n && fewest > 0; ++k) {
+      Vector<2> x = ball.centre;
+      if (item.rule != Rule::size)
+        x += ellipse.step(parameters_.delta * ball.radius, random);
+      const Walk at = walk_to(mesh_, item.cell, x);
+      if (at.cell == none) {
+        wall = at.wall;
+        continue;
+      }
+      Index hint = mesh_.background_cell[static_cast<std::size_t>(item.star)];
+      const Vertex<2> p = w_.background.vertex(x, hint);
+      const HalfFacet near = encroached(p, at.cell);
+      if (near.exists()) {
+        wall = near;
+        continue;
+      }
+      const int hits = hits_of(p, at.cell, parameters_.beta * ball.radius);
+      if (hits < fewest) {
+        fewest = hits;
+        best = p;
+        best_cell = at.cell;
+        best_hint = hint;
+      }
+    }
+    if (best_cell != none) {
+      if (bound_insertion(best, best_cell)) {
+        const Index v = mesh_.add_vertex(best, Triangulation<2>::interior, best_hint);
+        w_.cavity.fill(v);
+        count(item.rule);
+      }
+    } else if (wall.exists() && w_.length(wall) > shortest_split &&
+               split_edge(w_, wall) != none) {
+      ++counts_.boundary;
+    }
+  }
+
+  void count(Rule rule) {
+    switch (rule) {
+    case Rule::size:
+      ++counts_.size;
+      break;
+    case Rule::radius_edge:
+      ++counts_.radius_edge;
+      break;
+    case Rule::sliver:
+      ++counts_.sliver;
+      break;
+    case Rule::inconsistency:
+      ++counts_.inconsistency;
+      break;
+    case Rule::none:
+      break;
+    }
+  }
+
+  /// A constrained edge of the cell in whose diametral ellipse p lies.
+  [[nodiscard]] HalfFacet encroached(const Vertex<2> &p, Index cell) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const HalfFacet edge(cell, i);
+      if (mesh_.constraint(edge) == none)
+        continue;
+      const auto [a, b] = mesh_.facet(edge);
+      if (product<2>(p.M, mesh_.vertex(a).x - p.x).dot(mesh_.vertex(b).x - p.x) < 0)
+        return edge;
+    }
+    return {};
+  }
+
+  /// The cavity of p: the cells around it whose M_p-ball contains it (Algorithm 1).
+  /// @returns false when p does not see all of its boundary or is too near to a vertex.
+  bool bound_insertion(const Vertex<2> &p, Index cell) {
+    w_.cavity.clear();
+    w_.cavity.add(cell);
+    for (std::size_t k = 0; k < w_.cavity.cells().size(); ++k)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const HalfFacet edge(w_.cavity.cells()[k], i), beyond = mesh_.opposite(edge);
+        if (beyond.exists() && mesh_.constraint(edge) == none &&
+            !w_.cavity.contains(beyond.cell()) &&
+            in_metric_sphere<2>(p.M, mesh_.simplex(beyond.cell()), p.x) == Side::inside)
+          w_.cavity.add(beyond.cell());
+      }
+    w_.cavity.bound(none);
+    for (Index c : w_.cavity.cells())
+      for (Index v : mesh_.at(c)) {
+        const Vector<2> r = mesh_.vertex(v).x - p.x;
+        const bool kept = std::any_of(w_.cavity.facets().begin(),
+                                      w_.cavity.facets().end(), [&](HalfFacet h) {
+                                        const auto [a, b] = mesh_.facet(h);
+                                        return a == v || b == v;
+                                      });
+        if (!kept || quadratic<2>(p.M, r) < separation * separation)
+          return false;
+      }
+    return w_.cavity.is_star_shaped(p.x);
+  }
+
+  /// Quasi-cospherical configurations that p would make, up to the given radius: edges
+  /// of its star and of its link on which the four metrics would disagree.
+  [[nodiscard]] int hits_of(const Vertex<2> &p, Index cell, double radius) {
+    if (!bound_insertion(p, cell))
+      return std::numeric_limits<int>::max();
+    int hits = 0;
+    ring_.clear(); // first vertex of each facet of the cavity -> the facet
+    for (HalfFacet h : w_.cavity.facets())
+      ring_.emplace_back(mesh_.facet(h)[0], h);
+    std::sort(ring_.begin(), ring_.end(),
+              [](const auto &x, const auto &y) { return x.first < y.first; });
+    for (HalfFacet h : w_.cavity.facets()) {
+      const auto [ia, ib] = mesh_.facet(h);
+      const Vertex<2> &a = mesh_.vertex(ia), &b = mesh_.vertex(ib);
+      if (circumball(p.M, {p.x, a.x, b.x}).radius > radius)
+        continue;
+      const HalfFacet beyond = mesh_.opposite(h);
+      if (beyond.exists() && mesh_.constraint(h) == none)
+        hits += metrics_disagree(a, b, p, mesh_.vertex(mesh_.apex(beyond)));
+      const auto next =
+          std::lower_bound(ring_.begin(), ring_.end(), ib,
+                           [](const auto &item, Index v) { return item.first < v; });
+      if (next != ring_.end() && next->first == ib) // cells (p, a, b) and (p, b, c)
+        hits += metrics_disagree(p, b, mesh_.vertex(mesh_.facet(next->second)[1]), a);
+    }
+    return hits;
+  }
+};
+
+[[nodiscard]] double failing_fraction(const std::vector<std::uint8_t> &bits) {
+  const auto passing = std::count(bits.begin(), bits.end(), all_vertices);
+  return 1 - static_cast<double>(passing) / static_cast<double>(bits.size());
+}
+
+} // namespace
+
+double bounded_distortion_radius(const Background<2> &background, const Vertex<2> &at,
+                                 Index cell, double gamma_0) {
+  constexpr int n_directions = 8;
+  constexpr double largest = 2, smallest = .05, ratio = .8;
+  const SymmetricTensor<2> root =
+      matrix_function(at.M, [](double x) { return 1 / std::sqrt(x); });
+  for (double l = largest; l > smallest; l *= ratio) {
+    std::vector<SymmetricTensor<2>> samples{at.M};
+    for (double r : {.5 * l, l})
+      for (int k = 0; k < n_directions; ++k) {
+        const double angle = 2 * std::numbers::pi * k / n_directions;
+        Index hint = cell;
+        samples.push_back(background.metric(
+            at.x +
+                product<2>(root, Vector<2>(r * std::cos(angle), r * std::sin(angle))),
+            hint));
+      }
+    double worst = 1;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        worst = std::max(worst, distortion(samples[i], samples[j]));
+    if (worst <= gamma_0)
+      return l;
+  }
+  return smallest;
+}
+
+ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
+                                          Monitor &monitor,
+                                          const ConsistencyParameters &parameters,
+                                          std::uint64_t seed, int threads,
+                                          bool relocate, StarCheck &check) {
+  ConsistencyCounts counts;
+  Rounds rounds(w, parameters, seed, !relocate, counts);
+  const double most =
+      (1 + parameters.max_growth) * static_cast<double>(w.mesh.vertices.size());
+  MeshOnCurves best = w.on_curves;
+  StarCheck best_check = check;
+  int since_best = 0;
+  for (counts.rounds = 0;; ++counts.rounds) {
+    const std::vector<BadCell> bad = rounds.bad_cells(check.bits);
+    if (failing_fraction(check.bits) < failing_fraction(best_check.bits)) {
+      best = w.on_curves;
+      best_check = check;
+      since_best = 0;
+    }
+    if (bad.empty())
+      counts.stop = "consistent";
+    else if (counts.rounds == max_rounds)
+      counts.stop = "max_rounds";
+    else if (static_cast<double>(w.mesh.vertices.size()) > most)
+      counts.stop = "max_growth";
+    else if (since_best > patience)
+      counts.stop = "stalled";
+    else if (!monitor.keep_going(w.mesh.vertices.size(), 0))
+      counts.stop = name_of(monitor.reason());
+    if (!counts.stop.empty())
+      break;
+    // rules 1 to 3 end by packing; only rule 4 and rounds without a point can stall
+    const Rule rule = rounds.treat(bad, counts.rounds);
+    since_best += rule == Rule::inconsistency || rule == Rule::none;
+    // while failures are everywhere, moving vertices helps little for what it costs
+    const bool moving =
+        relocate && (failing_fraction(check.bits) < few_failing ||
+                     counts.rounds % rounds_between_moves == rounds_between_moves - 1);
+    if (moving)
+      (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds));
+    renumber(w);
+    check = check_stars(w, monitor, seed + 1 + std::uint64_t(counts.rounds), threads,
+                        moving);
+  }
+  if (failing_fraction(check.bits) > failing_fraction(best_check.bits)) {
+    w.on_curves = std::move(best);
+    check = std::move(best_check);
+  }
+  return counts;
+}
+
+} // namespace anistar
