@@ -56,7 +56,7 @@ def turning_metric(points: Float, width: float) -> Float:
     """
     angle = 0.25 * np.pi * (1 + np.tanh(points[:, 0] / width))
     axes = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    return np.einsum("kin,kjn,k->nij", axes, axes, 1 / np.array(SIZES) ** 2)
+    return np.asarray(np.einsum("kin,kjn,k->nij", axes, axes, 1 / np.array(SIZES) ** 2))
 
 
 def smallest_constants(gamma: float, delta: float) -> tuple[float, float, float]:

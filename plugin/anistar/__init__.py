@@ -2,7 +2,7 @@
 
 from . import metric
 from .adapt import Adapted, AdaptOptions, adapt
-from .certificate import Certificate, certify
+from .certificate import Certificate, SimplexOfStar, certify, explain_star
 from .errors import FormatError, MeshingError
 from .fields import Field
 from .formats import read, write
@@ -30,6 +30,7 @@ __all__ = [
     "MetricOptions",
     "RemeshOptions",
     "Remeshed",
+    "SimplexOfStar",
     "Step",
     "Study",
     "TransferOptions",
@@ -39,6 +40,7 @@ __all__ = [
     "adapt_loop",
     "certify",
     "convergence_study",
+    "explain_star",
     "metric",
     "read",
     "remesh",

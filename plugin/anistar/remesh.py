@@ -166,7 +166,8 @@ class RemeshReport:
     Attributes
     ----------
     converged : bool
-        The run ended by itself, not by a budget.
+        The run ended by itself, not by a budget; with ``until_consistent`` also: every star
+        agrees.
     stop_reason : str
         ``finished``, ``max_vertices`` or ``max_seconds``.
     n_points, n_cells : int
@@ -313,7 +314,8 @@ def remesh(
         names={**mesh.names, **geometry.names},
     )
     report = RemeshReport(
-        converged=raw["stop_reason"] == "finished",
+        converged=raw["stop_reason"] == "finished"
+        and raw["consistency"]["stop_reason"] in ("", "consistent"),
         stop_reason=raw["stop_reason"],
         n_points=new.n_points,
         n_cells=new.n_cells,

@@ -12,9 +12,9 @@ namespace {
 constexpr int max_rounds = 80;
 /// Rounds without fewer failing cells after which the run has stalled.
 constexpr int patience = 12;
-/// Vertices are moved after every round when fewer than this fraction of cells fails,
-/// else now and then.
-constexpr double few_failing = .02;
+/// Vertices are moved after every round when few cells fail, now and then when more do,
+/// and never when nearly all do.
+constexpr double few_failing = .02, many_failing = .3;
 constexpr int rounds_between_moves = 4;
 /// New vertices keep this distance from the others in their own metric (packing).
 constexpr double separation = .4;
@@ -354,13 +354,15 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
       counts.stop = name_of(monitor.reason());
     if (!counts.stop.empty())
       break;
-    // rules 1 to 3 end by packing; only rule 4 and rounds without a point can stall
+    // in the pure mode rules 1 to 3 end by packing, and only rule 4 can stall
     const Rule rule = rounds.treat(bad, counts.rounds);
-    since_best += rule == Rule::inconsistency || rule == Rule::none;
+    since_best += relocate || rule == Rule::inconsistency || rule == Rule::none;
     // while failures are everywhere, moving vertices helps little for what it costs
+    const double failing = failing_fraction(check.bits);
     const bool moving =
-        relocate && (failing_fraction(check.bits) < few_failing ||
-                     counts.rounds % rounds_between_moves == rounds_between_moves - 1);
+        relocate && (failing < few_failing ||
+                     (failing < many_failing && counts.rounds % rounds_between_moves ==
+                                                    rounds_between_moves - 1));
     if (moving)
       (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds));
     renumber(w);

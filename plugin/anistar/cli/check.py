@@ -14,7 +14,7 @@ from ..quality import quality
 from ..topology import Float
 from ..validation import Violation, validate
 from . import console
-from .files import creatable, writable
+from .files import writable, writable_file
 
 SUMMARY = "check a mesh; measure and certify it in a metric"
 EXAMPLE = "anistar check out.mesh --metric out.sol --reference in.mesh -o figures.vtu"
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check_targets(arguments: argparse.Namespace) -> None:
-    for flag, check in (("output", writable), ("picture", creatable)):
+    for flag, check in (("output", writable), ("picture", writable_file)):
         path = getattr(arguments, flag)
         if path and not arguments.metric:
             raise ValueError(f"--{flag} needs --metric")
@@ -96,14 +96,10 @@ def _show(
     certificate: Certificate | None,
 ) -> None:
     if arguments.json:
-        report: dict[str, Any] = {
-            "valid": not problems,
-            "problems": [p.message for p in problems],
-            "read": found,
-        }
+        said = {"valid": not problems, "problems": [p.message for p in problems], "read": found}
         if certificate is not None:
-            report["certificate"] = certificate.as_dict()
-        console.show_json({**report, **figures})
+            said["certificate"] = certificate.as_dict()
+        console.show_json({**said, **figures})
         return
     rows = [[name, value] for name, value in figures.items() if value is not None]
     console.show_table(arguments.input, ["", ""], rows)

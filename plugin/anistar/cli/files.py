@@ -11,15 +11,15 @@ from ..formats.suffixes import SOLUTION_OF, SOLUTIONS, suffix_of
 
 
 def writable(path: str, *, is_mesh: bool = True) -> Path:
-    """Return the output path, checked before anything is computed.
+    """Return the path of a mesh or a solution, checked before anything is computed.
 
     Raises
     ------
     FormatError
-        If nothing can be created there, no format has the suffix, or the format holds no mesh
-        although `is_mesh`.
+        If the folder does not exist or cannot be written, the path is a folder, no format has
+        its suffix, or the format holds no mesh although `is_mesh`.
     """
-    target = creatable(path)
+    target = writable_file(path)
     if not is_known(target):
         raise FormatError(f"cannot write {target}: no format has the suffix {target.suffix!r}")
     if is_mesh and suffix_of(target) in SOLUTIONS:
@@ -27,13 +27,13 @@ def writable(path: str, *, is_mesh: bool = True) -> Path:
     return target
 
 
-def creatable(path: str) -> Path:
-    """Return the output path of any kind of file, checked before anything is computed.
+def writable_file(path: str) -> Path:
+    """Return the path of any output file, checked before anything is computed.
 
     Raises
     ------
     FormatError
-        If the folder does not exist or cannot be written, the path is a folder, or it has no
+        If the folder does not exist or cannot be written, or the path is a folder or has no
         suffix.
     """
     target = Path(path)
