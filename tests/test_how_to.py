@@ -52,8 +52,7 @@ def test_one_adaptation_by_hand_carries_the_fields_over(folder):
     mesh, fields = anistar.read("out.mesh")
     assert anistar.validate(mesh, anistar.read("in.mesh")[0]) == []
     assert set(fields) == {"u"}
-    anistar.formats.write_metric("metric.sol", mesh, np.tile(np.eye(2), (mesh.n_points, 1, 1)))
-    assert call(check.replace("out.sol", "metric.sol")) in (0, 1)
+    assert call(check) in (0, 1)  # 1 where a star is not certified, which a layer may well have
     assert {"longest_edge", "quality"} <= set(anistar.read("figures.vtu")[1])
 
 
