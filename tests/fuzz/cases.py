@@ -151,7 +151,8 @@ def _frozen(case, mesh):
             ends = m.points[m.facets[m.facet_tags == tag]]
             sets.append({tuple(sorted(map(tuple, pair))) for pair in ends.tolist()})
         if sets[0] != sets[1]:
-            return f"frozen tag {tag}: {len(sets[1] - sets[0])} facets lost, {len(sets[0] - sets[1])} new"
+            lost, new = len(sets[1] - sets[0]), len(sets[0] - sets[1])
+            return f"frozen tag {tag}: {lost} facets lost, {new} new"
     return ""
 
 

@@ -1,7 +1,7 @@
 """The long fuzz: random domains and metrics, each judged, in processes that may crash.
 
-``python tests/fuzz/run.py --cases 2000 --seed 0 --seconds 600 --reproducers fuzz-failures`` prints a
-table by kind of domain and of metric, names every failure with its number, and writes its input.
+``python tests/fuzz/run.py --cases 2000 --seed 0 --seconds 600 --reproducers fuzz-failures`` prints
+a table by kind of domain and of metric, names every failure with its number, and writes its input.
 ``python tests/fuzz/run.py --seed 0 --only 17`` runs one case in this process.
 """
 
@@ -137,7 +137,8 @@ def print_table(rows):
         certified = sum(row.get("reason") == "certified" for row in made)
         stars = np.mean([row["star_ok"] for row in made]) if made else 0.0
         print(
-            f"{what + ' ' + kind:18}{len(members):7}{sum(bool(r.get('problem')) for r in members):5}"
+            f"{what + ' ' + kind:18}{len(members):7}"
+            f"{sum(bool(r.get('problem')) for r in members):5}"
             f"{sum(bool(r.get('error')) for r in members):9}{certified / max(1, len(made)):11.1%}"
             f"{stars:10.2%}{max(r.get('seconds', 0) for r in members):7.2f}"
         )

@@ -50,16 +50,24 @@ def writable_file(path: str) -> Path:
     return target
 
 
-def refuse_overlap(mesh_output: Path, metric_output: Path) -> None:
-    """Raise if the metric would be written over the mesh or its fields.
+def metric_target(path: str | None, mesh_output: Path) -> Path | None:
+    """Return the checked path of the metric, if there is one.
 
     Raises
     ------
+    FormatError
+        If the path cannot be written.
     ValueError
-        Names the path.
+        If the mesh or its fields are written there.
     """
-    taken = {mesh_output, mesh_output.with_suffix(SOLUTION_OF.get(suffix_of(mesh_output), ""))}
-    if metric_output in taken:
+    if not path:
+        return None
+    target = writable(path, is_mesh=False)
+    if target in (
+        mesh_output,
+        mesh_output.with_suffix(SOLUTION_OF.get(suffix_of(mesh_output), "")),
+    ):
         raise ValueError(
-            f"the metric cannot go to {metric_output}: the mesh or its fields are written there"
+            f"the metric cannot go to {target}: the mesh or its fields are written there"
         )
+    return target

@@ -6,12 +6,13 @@ import argparse
 from pathlib import Path
 
 from ..errors import FormatError
-from ..formats import read, read_metric, write, write_metric
-from ..formats.suffixes import solution_beside
+from ..fields import Field
+from ..formats import METRIC, read, read_metric, write, write_metric
+from ..formats.suffixes import SOLUTION_OF, solution_beside, suffix_of
 from ..remesh import RemeshReport, remesh
 from ..transfer import transfer
 from . import console
-from .files import writable
+from .files import metric_target, writable
 from .options import adapt_options, add_remesh_options
 
 SUMMARY = "remesh to a given metric, and carry the fields over"
@@ -30,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--metric-output",
         metavar="FILE",
-        help="metric at the new points; for out.mesh without fields the default is out.sol",
+        help="metric at the new points; for out.mesh without fields it goes to out.sol anyway",
     )
     parser.add_argument("--geometry", metavar="FILE", help="mesh whose boundary is the geometry")
     add_remesh_options(parser)
@@ -39,9 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output)
-    metric_output = (
-        writable(arguments.metric_output, is_mesh=False) if arguments.metric_output else None
-    )
+    metric_output = metric_target(arguments.metric_output, output)
     options = adapt_options(arguments)
     beside = solution_beside(Path(arguments.input))
     source = Path(arguments.metric) if arguments.metric else beside
@@ -53,9 +52,10 @@ def run(arguments: argparse.Namespace) -> int:
     done = remesh(mesh, M, options.remesh, geometry=geometry)
     # The solution beside a medit mesh is the metric itself, not a field to carry.
     carried = {} if source == beside else fields
-    write(output, done.mesh, transfer(mesh, carried, done.mesh, options.transfer).fields)
-    if metric_output is None and not carried and output.suffix in (".mesh", ".meshb"):
-        metric_output = output.with_suffix(".sol")
+    fields = transfer(mesh, carried, done.mesh, options.transfer).fields
+    if metric_output is None and not fields and suffix_of(output) in SOLUTION_OF:
+        fields = {METRIC: Field(done.metric)}
+    write(output, done.mesh, fields)
     if metric_output is not None:
         write_metric(metric_output, done.mesh, done.metric)
     if arguments.json:
