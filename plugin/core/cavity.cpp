@@ -60,7 +60,7 @@ template <std::size_t d> bool Cavity<d>::is_star_shaped(const Vector<d> &x) cons
   for (HalfFacet h : facets_) {
     Simplex<d> s = mesh_.simplex(h.cell());
     s[h.facet()] = x;
-    if (orientation<d>(s) != Orientation::positive)
+    if (!has_volume<d>(s))
       return false;
   }
   return true;

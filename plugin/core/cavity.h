@@ -38,8 +38,8 @@ public:
   void bound(Index apex, std::span<const HalfFacet> skipped = {});
   [[nodiscard]] std::span<const HalfFacet> facets() const { return facets_; }
 
-  /// Whether x sees every one of facets() strictly from inside: the test that keeps the
-  /// mesh valid, exact.
+  /// Whether x sees every one of facets() from inside, and not along it: the test that
+  /// keeps the mesh valid.
   [[nodiscard]] bool is_star_shaped(const Vector<d> &x) const;
 
   /// The corners of the cell that would replace the cavity at facet h.

@@ -32,7 +32,7 @@ bool grow_to_see(Triangulation<2> &mesh, Cavity<2> &cavity, Index apex,
     for (HalfFacet h : cavity.facets()) {
       Simplex<2> s = mesh.simplex(h.cell());
       s[h.facet()] = x;
-      if (orientation<2>(s) != Orientation::positive) {
+      if (!has_volume<2>(s)) {
         hidden = h;
         break;
       }

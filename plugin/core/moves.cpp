@@ -66,7 +66,7 @@ bool may_move(const Triangulation<2> &mesh, const Vector<2> &from, const Vector<
     const auto [ia, ib] = mesh.facet(h);
     const Vector<2> &a = mesh.vertex(ia).x, &b = mesh.vertex(ib).x;
     if (cross(a - x, b - x) <= smallest_area * cross(a - from, b - from) ||
-        orientation(x, a, b) != Orientation::positive)
+        !has_volume<2>({x, a, b}))
       return false;
   }
   return true;

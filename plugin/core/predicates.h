@@ -21,6 +21,9 @@ inline constexpr double orientation_bound_2 = 4 * round_off;
 inline constexpr double orientation_bound_3 = 8 * round_off;
 inline constexpr double sphere_bound_2 = 16 * round_off;
 inline constexpr double sphere_bound_3 = 32 * round_off;
+/// Determinants of edge vectors are off by a few round-offs of the product of their
+/// lengths; this is twice what a validator in double precision asks of a cell.
+inline constexpr double flatness = 64 * round_off;
 /// Below this magnitude products may have lost bits to underflow.
 inline constexpr double underflow_guard = 1e-200;
 
@@ -86,6 +89,22 @@ template <std::size_t d> [[nodiscard]] Orientation orientation(const Simplex<d> 
     return orientation(s[0], s[1], s[2]);
   else
     return orientation(s[0], s[1], s[2], s[3]);
+}
+
+/// Whether the volume of a simplex is positive and above the round-off of its edges,
+/// whatever the order of its vertices: a cell of less, positive as it may be exactly, is
+/// flat to everyone who computes with doubles.
+template <std::size_t d> [[nodiscard]] inline bool has_volume(const Simplex<d> &s) {
+  double longest = 0; // squared
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t j = i + 1; j <= d; ++j)
+      longest = std::max(longest, (s[j] - s[i]).squaredNorm());
+  const double bound = detail::flatness * longest;
+  if constexpr (d == 2)
+    return cross(s[1] - s[0], s[2] - s[0]) > bound;
+  else
+    return (s[1] - s[0]).dot((s[2] - s[0]).cross(s[3] - s[0])) >
+           bound * std::sqrt(longest);
 }
 
 /// A value with the sum of the magnitudes of its terms, to which its error is relative.

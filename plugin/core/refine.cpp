@@ -153,12 +153,16 @@ private:
     Index hint = w_.mesh.background_cell[static_cast<std::size_t>(before[0])];
     const Vertex<2> vertex = w_.background.vertex(x, hint);
     for (std::size_t i = 0; i < 3; ++i)
-      if (encroaches(vertex, HalfFacet(at.cell, i))) {
-        if (split(HalfFacet(at.cell, i)))
+      if (const HalfFacet edge(at.cell, i); encroaches(vertex, edge)) {
+        const bool is_short = w_.length(edge) < shortest_split;
+        if (split(edge)) {
           again(cell, before);
-        else
+          return;
+        }
+        if (is_short) {
           ++counts_.rejected;
-        return;
+          return;
+        } // a long edge that is frozen: its disc must be refined all the same
       }
     if (is_crowded(vertex, at.cell) ||
         insert_in_cell(w_, at.cell, vertex, hint) == none) {

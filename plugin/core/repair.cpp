@@ -176,8 +176,7 @@ private:
   [[nodiscard]] bool sees_link(const Vector<2> &x) const {
     return std::all_of(star_.begin(), star_.end(), [&](HalfFacet h) {
       const auto [a, b] = mesh_.facet(h);
-      return orientation(x, mesh_.vertex(a).x, mesh_.vertex(b).x) ==
-             Orientation::positive;
+      return has_volume<2>({x, mesh_.vertex(a).x, mesh_.vertex(b).x});
     });
   }
 
