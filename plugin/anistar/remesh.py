@@ -123,6 +123,10 @@ class RemeshOptions:
     callback: Callback | None = None
 
     def __post_init__(self) -> None:
+        for name in ("max_vertices", "seed", "threads"):
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, int | np.integer):
+                raise TypeError(f"{name} must be an integer, got {value!r}")
         if self.max_vertices is not None and self.max_vertices < 3:
             raise ValueError(f"max_vertices must be at least 3, got {self.max_vertices}")
         if self.max_seconds is not None and not self.max_seconds > 0:
@@ -275,42 +279,21 @@ def remesh(
     options = RemeshOptions() if options is None else options
     geometry = mesh if geometry is None else geometry
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
-    if mesh.dim != 2 or geometry.dim != 2:
+    if mesh.dim != 2:
         raise ValueError(f"remesh works on 2D meshes; this one has dimension {mesh.dim}")
+    if geometry.dim != 2:
+        raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh 2")
     _check_frozen(options.frozen_tags, geometry)
-    try:
-        raw = _core.remesh2(
-            mesh.points,
-            mesh.cells,
-            metric,
-            geometry.points,
-            geometry.cells,
-            geometry.cell_tags,
-            geometry.facets,
-            geometry.facet_tags,
-            geometry.corners,
-            np.array(options.frozen_tags, dtype=np.int32),
-            options.ridge_angle,
-            options.hausdorff_number,
-            UNLIMITED if options.max_vertices is None else options.max_vertices,
-            np.inf if options.max_seconds is None else options.max_seconds,
-            {True: "on", False: "off", "auto": "auto"}[options.agreement],
-            {True: "on", False: "off", "pure": "pure"}[options.until_consistent],
-            {**asdict(options.consistency), "gamma_0": options.consistency.gamma_0 or np.inf},
-            options.seed,
-            options.threads,
-            None if project is None else _pointwise(project),
-            options.callback,
-        )
-    except _core.MeshingError as error:
-        raise MeshingError(str(error)) from None
+    scale = _unit_scale(mesh.points)
+    raw = _call_core(mesh, metric, geometry, project, options, scale)
+    points = raw["points"] / scale
     new = Mesh._trusted(
-        points=raw["points"],
+        points=points,
         cells=raw["cells"],
         cell_tags=raw["cell_tags"],
         facets=raw["facets"],
         facet_tags=raw["facet_tags"],
-        corners=_same_points(geometry.points[geometry.corners], raw["points"]),
+        corners=_same_points(geometry.points[geometry.corners], points),
         names={**mesh.names, **geometry.names},
     )
     report = RemeshReport(
@@ -329,7 +312,56 @@ def remesh(
         counts=raw["counts"],
         seconds=raw["seconds"],
     )
-    return Remeshed(new, raw["metric"], report)
+    return Remeshed(new, raw["metric"] * scale**2, report)
+
+
+def _unit_scale(points: Float) -> float:
+    """Return the power of two that brings the extent of the points to about one.
+
+    The core then computes with the same numbers whatever the unit of length, as long as units
+    differ by powers of two.
+    """
+    extent = float(np.ptp(points, axis=0).max())
+    return float(np.ldexp(1.0, -int(np.frexp(extent)[1])))
+
+
+def _call_core(
+    mesh: Mesh,
+    metric: Float,
+    geometry: Mesh,
+    project: Project | None,
+    options: RemeshOptions,
+    scale: float,
+) -> dict[str, Any]:
+    """Remesh in scaled coordinates; points and metric come back scaled."""
+    parameters = asdict(options.consistency)
+    parameters["gamma_0"] = options.consistency.gamma_0 or np.inf
+    try:
+        return _core.remesh2(
+            mesh.points * scale,
+            mesh.cells,
+            metric / scale**2,
+            geometry.points * scale,
+            geometry.cells,
+            geometry.cell_tags,
+            geometry.facets,
+            geometry.facet_tags,
+            geometry.corners,
+            np.array(options.frozen_tags, dtype=np.int32),
+            options.ridge_angle,
+            options.hausdorff_number,
+            UNLIMITED if options.max_vertices is None else options.max_vertices,
+            np.inf if options.max_seconds is None else options.max_seconds,
+            {True: "on", False: "off", "auto": "auto"}[options.agreement],
+            {True: "on", False: "off", "pure": "pure"}[options.until_consistent],
+            parameters,
+            options.seed,
+            options.threads,
+            None if project is None else _pointwise(project, scale),
+            options.callback,
+        )
+    except _core.MeshingError as error:
+        raise MeshingError(str(error)) from None
 
 
 def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:
@@ -338,14 +370,16 @@ def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:
         raise ValueError(f"frozen_tags: no facet of the geometry has tag {unknown[0]}")
 
 
-def _pointwise(project: Project) -> Callable[[float, float, int], tuple[float, float]]:
-    """Call the user's vectorised projection for one point, and check what it returns."""
+def _pointwise(
+    project: Project, scale: float
+) -> Callable[[float, float, int], tuple[float, float]]:
+    """Call the user's vectorised projection for one scaled point, and check what it returns."""
 
     def at(x: float, y: float, tag: int) -> tuple[float, float]:
-        moved = np.asarray(project(np.array([[x, y]]), tag), dtype=np.float64)
+        moved = np.asarray(project(np.array([[x, y]]) / scale, tag), dtype=np.float64)
         if moved.shape != (1, 2) or not np.isfinite(moved).all():
             raise ValueError(f"project must return finite points of shape (1, 2), got {moved!r}")
-        return float(moved[0, 0]), float(moved[0, 1])
+        return float(moved[0, 0] * scale), float(moved[0, 1] * scale)
 
     return at
 

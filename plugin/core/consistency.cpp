@@ -350,7 +350,8 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
       counts.stop = "max_growth";
     else if (since_best > patience)
       counts.stop = "stalled";
-    else if (!monitor.keep_going(w.mesh.vertices.size(), 0))
+    else if (!monitor.keep_going(w.mesh.vertices.size(), 0) ||
+             !monitor.look(double(counts.rounds) / max_rounds))
       counts.stop = name_of(monitor.reason());
     if (!counts.stop.empty())
       break;

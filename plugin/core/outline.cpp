@@ -13,6 +13,8 @@ namespace {
 /// of mean_length: short against the unit edge.
 constexpr double sample_length = .25;
 constexpr int max_sample_depth = 24;
+/// More edges than this on one curve are an absurd request.
+constexpr double most_edges = 1e9;
 /// Chords are bisected at most this often to meet the Hausdorff bound.
 constexpr int max_bisections = 16;
 
@@ -176,13 +178,16 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
       (void)fixed(static_cast<Index>(v));
   for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
     const Curve &curve = geometry.curves[c];
-    const LengthTable table = Sampler{curve, background, 1e9}.run();
-    if (!(table.total() < 1e9) ||
+    const LengthTable table = Sampler{curve, background, most_edges}.run();
+    if (!(table.total() < most_edges) ||
         !monitor.has_room(outline.vertices.size() +
                           static_cast<std::size_t>(table.total())))
-      throw MeshingError("the metric asks for " + std::to_string(table.total()) +
+      throw MeshingError("the metric asks for " +
+                         (table.total() < most_edges
+                              ? std::to_string(static_cast<long>(table.total()))
+                              : "more than a billion") +
                          " edges on a curve with tag " + std::to_string(curve.tag) +
-                         ", more than max_vertices allows");
+                         ", more than there may be vertices");
     const std::vector<double> t = cut(curve, table, hausdorff);
     // the seam of a loop stays: a parameter must begin somewhere
     Index previous = fixed(curve.vertices.front());

@@ -26,6 +26,26 @@ constexpr double repair_floor = .5;
 /// of the unit edges, and on none above it.
 constexpr double largest_agreeing_distortion = .6;
 
+/// A geometry that reaches further beyond the mesh that carries the metric than this
+/// fraction of its extent is another domain.
+constexpr double largest_gap = .1;
+
+void check_gap(const Background<2> &background, const Outline &outline) {
+  Box<2> box;
+  for (const Vector<2> &x : background.locator().points())
+    box.extend(x);
+  const double extent = (box.high - box.low).maxCoeff();
+  for (std::size_t v = 0; v < outline.vertices.size(); ++v) {
+    const Vector<2> &x = outline.vertices[v].x;
+    const double gap = background.distance(x, outline.background[v]);
+    if (gap > largest_gap * extent)
+      throw std::invalid_argument(
+          "the geometry reaches beyond the mesh that carries the metric by " +
+          std::to_string(gap / extent) + " of its extent, more than " +
+          std::to_string(largest_gap));
+  }
+}
+
 class Stopwatch {
 public:
   Stopwatch(Monitor &monitor, std::map<std::string, double> &seconds)
@@ -142,6 +162,8 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   Geometry geometry = make_geometry(input, &projection);
   Outline outline =
       make_outline(geometry, background, settings.hausdorff_number, monitor);
+
+  check_gap(background, outline);
 
   watch.phase("size");
   MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));

@@ -95,7 +95,7 @@ void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
             int threads) {
   const std::size_t n = w.mesh.vertices.size();
   const std::size_t n_blocks = std::max<std::size_t>(1, n / block_size);
-  if (!monitor.keep_going(0, 0))
+  if (!monitor.look(0))
     return;
   std::vector<std::vector<Index>> between(n_blocks);
   std::mutex counting;

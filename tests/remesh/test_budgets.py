@@ -41,14 +41,14 @@ def test_a_budget_that_is_not_met_changes_no_byte():
 
 def test_max_vertices_below_what_the_curves_need_is_an_error():
     mesh = square(40)
-    message = r"the metric asks for [\d.]+ edges on a curve with tag \d, more than max_vertices"
+    message = r"the metric asks for [\d.]+ edges on a curve with tag \d, more than there may be"
     with pytest.raises(MeshingError, match=message):
         remesh(mesh, arc_metric(mesh, 2000), RemeshOptions(max_vertices=20))
 
 
 def test_a_metric_beyond_any_memory_is_an_error_at_once():
     mesh = square(4)
-    with pytest.raises(MeshingError, match=r"the metric asks for \d+\.\d+ edges"):
+    with pytest.raises(MeshingError, match="the metric asks for more than a billion edges"):
         remesh(mesh, rotating_metric(mesh, 1e40))
 
 

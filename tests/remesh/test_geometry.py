@@ -264,3 +264,40 @@ def test_a_channel_far_narrower_than_the_edges_stays_open(width):
     mesh = annulus(4, inner=1 - width)
     done = remesh(mesh, uniform(mesh, 0.3))
     assert validate(done.mesh, mesh, tolerance=0.02) == []
+
+
+def onto_circles(points, tag):
+    radius = 0.5 if tag == 5 else 1.0
+    return radius * points / np.linalg.norm(points, axis=1, keepdims=True)
+
+
+def test_project_moves_every_new_point_of_a_curve_onto_the_true_geometry():
+    mesh = target(12)
+    tags = set()
+
+    def project(points, tag):
+        assert points.shape[1] == 2
+        tags.add(tag)
+        return onto_circles(points, tag)
+
+    done = remesh(mesh, uniform(mesh, 0.06), project=project)
+    assert validate(done.mesh, mesh, tolerance=0.05) == []
+    assert tags == {5, 6}
+    for tag, radius in ((5, 0.5), (6, 1.0)):
+        assert np.abs(np.linalg.norm(ends(done.mesh, tag), axis=2) - radius).max() < 4e-16
+
+
+@pytest.mark.parametrize("answer", [np.zeros((2, 2)), [[np.nan, 0.0]], [[0.0, 0.0, 0.0]]])
+def test_a_projection_that_returns_nonsense_is_refused(answer):
+    mesh = target(12)
+    with pytest.raises(ValueError, match=r"project must return finite points of shape \(1, 2\)"):
+        remesh(mesh, uniform(mesh, 0.06), project=lambda points, tag: answer)
+
+
+def test_an_exception_in_project_comes_through():
+    def project(points, tag):
+        raise KeyError("no such face")
+
+    mesh = target(12)
+    with pytest.raises(KeyError, match="no such face"):
+        remesh(mesh, uniform(mesh, 0.06), project=project)

@@ -7,8 +7,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from meshes import rectangle_with_jitter, slit, square
-from shapes import arc, arc_hessian, arc_metric, linear_metric, rotating_metric
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from meshes import rectangle_with_jitter, slit, square, two_regions
+from shapes import (
+    angles,
+    arc,
+    arc_hessian,
+    arc_metric,
+    fan,
+    linear_metric,
+    on_clover,
+    rotating_metric,
+    uniform,
+)
 
 from anistar import _core
 from anistar.interpolation_error import l2_error
@@ -170,3 +182,18 @@ def test_the_interpolation_error_is_that_of_unit_equilateral_triangles(wanted):
 def eigvals(products):
     """The real eigenvalues of products of two symmetric matrices, one of them definite."""
     return np.linalg.eigvals(products).real
+
+
+@settings(max_examples=12)
+@given(power=st.integers(-60, 60), curved=st.booleans())
+def test_scaling_by_a_power_of_two_commutes_with_remeshing_exactly(power, curved):
+    mesh = fan(on_clover(angles(40))) if curved else two_regions(20)
+    M = uniform(mesh, 0.1) if curved else rotating_metric(mesh, 300)
+    factor = 2.0**power
+    plain = remesh(mesh, M)
+    scaled = remesh(changed(mesh, points=mesh.points * factor), M / factor**2)
+    assert validate(plain.mesh) == validate(scaled.mesh) == []
+    assert (plain.mesh.points * factor).tobytes() == scaled.mesh.points.tobytes()
+    assert plain.mesh.cells.tobytes() == scaled.mesh.cells.tobytes()
+    assert plain.mesh.facets.tobytes() == scaled.mesh.facets.tobytes()
+    assert plain.metric.tobytes() == (scaled.metric * factor**2).tobytes()
