@@ -246,3 +246,14 @@ def test_a_reader_that_has_seen_enough_is_no_error(folder):
     closed.stderr.close()
     assert closed.wait() == 1
     assert said == b""
+
+
+def test_a_solution_of_an_earlier_run_is_not_taken_for_a_new_one(folder, capsys):
+    (folder / "solver.py").write_text(SECOND_CALL_FAILS)
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    words = "loop in.vtu --complexities 50 -o run"
+    run(words, "--command", command)
+    assert (folder / "run" / "step_000.sol").is_file()
+    (folder / "solver.py").write_text("")
+    assert run(words, "--command", command) == 1
+    assert "the solver wrote no run/step_000.sol" in capsys.readouterr().err

@@ -4,11 +4,13 @@ import dataclasses
 
 import numpy as np
 import pytest
-from meshes import cube, square
+from meshes import cube, square, two_regions
 from shapes import uniform
 
+from anistar.errors import MeshingError
+from anistar.mesh import Mesh
 from anistar.metric import MetricError
-from anistar.remesh import ConsistencyOptions, RemeshOptions, remesh
+from anistar.remesh import ConsistencyOptions, RemeshOptions, _tag_measures, remesh
 
 
 def damaged(index, tensor):
@@ -116,3 +118,12 @@ def test_the_input_is_never_modified():
     done = remesh(mesh, M)
     assert [array.tobytes() for array in (mesh.points, mesh.cells, mesh.facets, M)] == before
     assert not np.shares_memory(done.mesh.points, mesh.points)
+
+
+@pytest.mark.parametrize(("kind", "changes"), [("cell", "cell_tags"), ("facet", "facet_tags")])
+def test_a_mesh_that_lost_a_tag_is_an_error(kind, changes):
+    mesh = two_regions()
+    lost = dict(mesh.arrays())
+    lost[changes] = np.zeros_like(lost[changes])
+    with pytest.raises(MeshingError, match=f"the new mesh lost {kind} tag "):
+        _tag_measures(mesh, Mesh._trusted(**lost))

@@ -142,12 +142,15 @@ def _canonical(word: str) -> str:
 
 def _add(group: argparse._ArgumentGroup, table: dict[str, tuple[Any, str]]) -> None:
     for name, (kind, text) in table.items():
+        optional: dict[str, Any] = {}
+        if name in _OPTIONAL_VALUE:
+            optional = {"nargs": "?", "const": _OPTIONAL_VALUE[name]}
         group.add_argument(
             f"--{name.replace('_', '-')}",
             dest=name,
             type=kind,
             default=argparse.SUPPRESS,
-            **({"nargs": "?", "const": _OPTIONAL_VALUE[name]} if name in _OPTIONAL_VALUE else {}),
+            **optional,
             metavar="X" if kind is not str else "NAME",
             help=text,
         )
