@@ -7,7 +7,8 @@ import pytest
 from meshes import square
 
 import anistar
-from anistar.remesh import ConsistencyOptions, RemeshOptions, remesh
+from anistar.consistency import ConsistencyOptions
+from anistar.remesh import RemeshOptions, remesh
 
 
 def layered(mesh, complexity=1500.0, factor=1.5):

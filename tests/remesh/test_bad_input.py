@@ -7,10 +7,12 @@ import pytest
 from meshes import cube, square, two_regions
 from shapes import uniform
 
+from anistar.consistency import ConsistencyOptions
 from anistar.errors import MeshingError
 from anistar.mesh import Mesh
 from anistar.metric import MetricError
-from anistar.remesh import ConsistencyOptions, RemeshOptions, _tag_measures, remesh
+from anistar.remesh import RemeshOptions, remesh
+from anistar.remesh_report import tag_measures
 
 
 def damaged(index, tensor):
@@ -126,4 +128,4 @@ def test_a_mesh_that_lost_a_tag_is_an_error(kind, changes):
     lost = dict(mesh.arrays())
     lost[changes] = np.zeros_like(lost[changes])
     with pytest.raises(MeshingError, match=f"the new mesh lost {kind} tag "):
-        _tag_measures(mesh, Mesh._trusted(**lost))
+        tag_measures(mesh, Mesh._trusted(**lost))

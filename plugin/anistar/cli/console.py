@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from ..remesh import RemeshReport
+from ..remesh_report import RemeshReport
 from ..report import to_json
 
 

@@ -9,7 +9,8 @@ from ..errors import FormatError
 from ..fields import Field
 from ..formats import METRIC, read, read_metric, write, write_metric
 from ..formats.suffixes import SOLUTION_OF, solution_beside, suffix_of
-from ..remesh import RemeshReport, remesh
+from ..remesh import remesh
+from ..remesh_report import RemeshReport
 from ..transfer import transfer
 from . import console
 from .files import metric_target, writable
