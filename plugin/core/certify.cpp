@@ -16,24 +16,6 @@ namespace {
 constexpr double sharp_corner = std::numbers::pi / 6;
 constexpr int max_exempt = 8;
 
-/// The circumcentre of abc in M relative to a, and its radius.
-struct Circumcircle {
-  Vector<2> centre;
-  double radius;
-};
-
-Circumcircle circumcircle(const SymmetricTensor<2> &M, const Vector<2> &a,
-                          const Vector<2> &b, const Vector<2> &c) {
-  const Vector<2> u = b - a, v = c - a;
-  const double area = cross(u, v), det = determinant<2>(M);
-  const double uu = quadratic<2>(M, u), vv = quadratic<2>(M, v);
-  const double gx = (uu * v[1] - vv * u[1]) / (2 * area);
-  const double gy = (vv * u[0] - uu * v[0]) / (2 * area);
-  const Vector<2> r((M(1, 1) * gx - M(0, 1) * gy) / det,
-                    (M(0, 0) * gy - M(0, 1) * gx) / det);
-  return {a + r, std::sqrt(std::max(0., r[0] * gx + r[1] * gy))};
-}
-
 class Certifier {
 public:
   Certifier(std::span<const Vertex<2>> vertices, std::span<const Cell<2>> cells,

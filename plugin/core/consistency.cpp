@@ -23,22 +23,6 @@ constexpr double shortest_split = .8;
 
 enum class Rule { none, size, radius_edge, sliver, inconsistency };
 
-struct Ball {
-  Vector<2> centre;
-  double radius;
-};
-
-Ball circumball(const SymmetricTensor<2> &M, const Simplex<2> &s) {
-  const Vector<2> u = s[1] - s[0], v = s[2] - s[0];
-  const double area = cross(u, v), det = determinant<2>(M);
-  const double uu = quadratic<2>(M, u), vv = quadratic<2>(M, v);
-  const double gx = (uu * v[1] - vv * u[1]) / (2 * area);
-  const double gy = (vv * u[0] - uu * v[0]) / (2 * area);
-  const Vector<2> r((M(1, 1) * gx - M(0, 1) * gy) / det,
-                    (M(0, 0) * gy - M(0, 1) * gx) / det);
-  return {s[0] + r, std::sqrt(std::max(0., r[0] * gx + r[1] * gy))};
-}
-
 double shortest_edge(const SymmetricTensor<2> &M, const Simplex<2> &s) {
   return std::sqrt(std::min({quadratic<2>(M, s[1] - s[0]), quadratic<2>(M, s[2] - s[1]),
                              quadratic<2>(M, s[0] - s[2])}));
@@ -125,7 +109,7 @@ private:
       if (bits != 0 && (bits >> k & 1) == 0)
         continue; // not in this star, but in another one
       const Vertex<2> &v = mesh_.vertex(cell[k]);
-      const Ball ball = circumball(v.M, s);
+      const Circumcircle ball = circumcircle(v.M, s[0], s[1], s[2]);
       const double shortest = shortest_edge(v.M, s);
       const double volume = .5 * cross(s[1] - s[0], s[2] - s[0]) / v.weight;
       const double rho = ball.radius / shortest;
@@ -143,7 +127,7 @@ private:
 
   /// The sizing field: one, the unit of the metric, or the bounded distortion radius
   /// where that is smaller (Definition 2.2).
-  [[nodiscard]] double size_at(const Ball &ball, Index v) const {
+  [[nodiscard]] double size_at(const Circumcircle &ball, Index v) const {
     if (std::isinf(parameters_.gamma_0))
       return 1;
     Index cell = mesh_.background_cell[static_cast<std::size_t>(v)];
@@ -154,7 +138,8 @@ private:
 
   void insert_for(const BadCell &item, int round) {
     const SymmetricTensor<2> M = mesh_.vertex(item.star).M;
-    const Ball ball = circumball(M, mesh_.simplex(item.cell));
+    const Simplex<2> s = mesh_.simplex(item.cell);
+    const Circumcircle ball = circumcircle(M, s[0], s[1], s[2]);
     const EllipseSampler ellipse(M);
     CounterRandom random(seed_ + 2, static_cast<std::uint64_t>(item.cell),
                          static_cast<std::uint64_t>(round));
@@ -274,7 +259,7 @@ private:
     for (HalfFacet h : w_.cavity.facets()) {
       const auto [ia, ib] = mesh_.facet(h);
       const Vertex<2> &a = mesh_.vertex(ia), &b = mesh_.vertex(ib);
-      if (circumball(p.M, {p.x, a.x, b.x}).radius > radius)
+      if (circumcircle(p.M, p.x, a.x, b.x).radius > radius)
         continue;
       const HalfFacet beyond = mesh_.opposite(h);
       if (beyond.exists() && mesh_.constraint(h) == none)
