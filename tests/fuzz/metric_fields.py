@@ -2,7 +2,6 @@
 
 import numpy as np
 
-import anistar
 from anistar.metric import complexity, graded
 
 
@@ -13,12 +12,9 @@ def metric_field(rng, mesh, *, largest=3000.0):
     x = (mesh.points - mesh.points.mean(axis=0)) / size
     angle, log_size, log_ratio = KINDS[kind](rng, x)
     M = _tensors(angle, log_size, log_ratio) / size**2
-    for _ in range(3):  # bounds of the ratio make this less than linear
-        target = 10 ** rng.uniform(0, np.log10(largest))
-        M *= target / complexity(mesh, M)
-        if kind == "graded":
-            M = graded(mesh, M, factor=rng.uniform(1.2, 2))
-        break
+    M *= 10 ** rng.uniform(0, np.log10(largest)) / complexity(mesh, M)
+    if kind == "graded":
+        M = graded(mesh, M, factor=rng.uniform(1.2, 2))
     excess = complexity(mesh, M) / largest
     return kind, M / max(1.0, excess)
 
@@ -55,7 +51,11 @@ def _smooth(rng, x):
 
 def _rough(rng, x):
     n = len(x)
-    return rng.uniform(0, np.pi, n), rng.normal(size=n) * rng.uniform(0, 2), _ratio(rng) * rng.random(n)
+    return (
+        rng.uniform(0, np.pi, n),
+        rng.normal(size=n) * rng.uniform(0, 2),
+        _ratio(rng) * rng.random(n),
+    )
 
 
 def _layer(rng, x):
