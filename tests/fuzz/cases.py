@@ -55,6 +55,8 @@ def make_case(seed, number, *, largest=3000.0):
         ridge_angle=float(rng.choice([45.0, 45.0, 30.0, 80.0])),
         max_vertices=int(rng.choice([200, 6000, 6000, 6000])),
         max_seconds=60.0,
+        agreement=["auto", "auto", True, False][rng.integers(4)],
+        until_consistent=bool(rng.random() < 0.15),
     )
     return Case(number, shape.kind, metric_kind, geometry, mesh, M, options)
 

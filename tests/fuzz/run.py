@@ -56,7 +56,7 @@ class _Worker:
         )
         self.lines = Queue()
         threading.Thread(target=self._read, daemon=True).start()
-        self.process.stdin.write(" ".join(map(str, numbers)) + "\n")
+        self.process.stdin.write("\t".join(map(str, numbers)) + "\n")
         self.process.stdin.close()
 
     def _read(self):
@@ -88,7 +88,7 @@ def work(seed, largest):
     """Run the cases whose numbers come on the standard input."""
     from cases import make_case, run_case
 
-    for number in map(int, sys.stdin.readline().split()):
+    for number in map(int, sys.stdin.readline().split("\t")):
         start = time.perf_counter()
         row = {"number": number}
         try:
