@@ -224,6 +224,13 @@ Vector<2> Curve::at(double t) const {
   return projection_ && *projection_ ? (*projection_)(x, tag) : x;
 }
 
+Vector<2> Curve::on_polyline(double t) const {
+  const double last = static_cast<double>(n_segments());
+  const double whole = std::clamp(std::floor(t), 0., last - 1);
+  const auto k = static_cast<std::size_t>(whole);
+  return points_[k] + (t - whole) * (points_[k + 1] - points_[k]);
+}
+
 Vector<2> Curve::derivative(double t) const {
   const double last = static_cast<double>(n_segments());
   const double whole = std::clamp(std::floor(t), 0., last - 1);
@@ -236,6 +243,26 @@ Vector<2> Curve::derivative(double t) const {
          s * (2 - 3 * s) * (end_[k] - chord);
 }
 
+namespace {
+
+/// Corners on no facet, with the region that they lie in.
+std::vector<FreePoint> free_points(const GeometryInput &input, const Chains &chains) {
+  std::vector<Index> region(input.points.size(), no_region);
+  std::vector<FreePoint> found;
+  for (std::size_t c = 0; c < input.cells.size(); ++c)
+    for (Index v : input.cells[c])
+      region[static_cast<std::size_t>(v)] = input.cell_tags[c];
+  std::vector<Index> corners(input.corners.begin(), input.corners.end());
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  for (Index v : corners)
+    if (chains.at[static_cast<std::size_t>(v)].empty())
+      found.push_back({v, region[static_cast<std::size_t>(v)]});
+  return found;
+}
+
+} // namespace
+
 Geometry make_geometry(const GeometryInput &input, const Projection *projection) {
   const Chains chains{input};
   Geometry geometry;
@@ -246,6 +273,7 @@ Geometry make_geometry(const GeometryInput &input, const Projection *projection)
   for (std::size_t v = 0; v < input.points.size(); ++v)
     if (chains.is_corner(static_cast<Index>(v)))
       geometry.is_corner[v] = true;
+  geometry.free_points = free_points(input, chains);
 
   std::vector<bool> done(chains.links.size(), false);
   const auto trace = [&](Index from, std::size_t n) {

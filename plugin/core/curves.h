@@ -47,6 +47,8 @@ public:
 
   /// The point at parameter t: segment floor(t), fraction t - floor(t).
   [[nodiscard]] Vector<2> at(double t) const;
+  /// The same on the geometry's own polyline.
+  [[nodiscard]] Vector<2> on_polyline(double t) const;
   /// d at / dt.
   [[nodiscard]] Vector<2> derivative(double t) const;
 
@@ -62,11 +64,16 @@ private:
   const Projection *projection_ = nullptr;
 };
 
-/// A point that must stay, and where it is in the geometry.
+/// A point that must stay and is on no curve.
+struct FreePoint {
+  Index point, region;
+};
+
 struct Geometry {
   std::vector<Vector<2>> points;
   std::vector<Curve> curves;
   std::vector<bool> is_corner; ///< per point of the geometry
+  std::vector<FreePoint> free_points;
 };
 
 /// Cuts the facets into curves at corners: where other than two facets meet, tags or

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <sstream>
 
 namespace anistar {
 namespace {
@@ -15,6 +15,9 @@ constexpr double sample_length = .25;
 constexpr int max_sample_depth = 24;
 /// More edges than this on one curve are an absurd request.
 constexpr double most_edges = 1e9;
+/// Parameters this near to a point of the geometry are there: a retreat, which may put
+/// a vertex on that point, would leave an edge without length.
+constexpr double at_point = 1e-7;
 /// Chords are bisected at most this often to meet the Hausdorff bound.
 constexpr int max_bisections = 16;
 
@@ -98,6 +101,10 @@ std::vector<double> cut(const Curve &curve, const LengthTable &table,
   std::vector<double> cuts{0};
   for (std::size_t k = 0; k + 1 < unit.size(); ++k)
     bisect_to_bound(curve, unit[k], unit[k + 1], hausdorff, 0, cuts);
+  for (double &t : cuts)
+    if (std::abs(t - std::round(t)) < at_point)
+      t = std::round(t);
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
   return cuts;
 }
 
@@ -108,7 +115,7 @@ bool between(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p) {
 
 /// Whether p lies on the closed segment ab.
 bool is_on(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p) {
-  return orientation(a, b, p) == Orientation::degenerate && between(a, b, p);
+  return between(a, b, p) && orientation(a, b, p) == Orientation::degenerate;
 }
 
 bool segments_meet(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p,
@@ -123,6 +130,12 @@ bool segments_meet(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p,
 }
 
 } // namespace
+
+std::string place(const Vector<2> &x) {
+  std::ostringstream text;
+  text << '(' << x[0] << ", " << x[1] << ')';
+  return text.str();
+}
 
 double middle(const Curve &curve, double t0, double t1) {
   const Vector<2> a = curve.at(t0), b = curve.at(t1);
@@ -176,6 +189,8 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
   for (std::size_t v = 0; v < geometry.points.size(); ++v)
     if (geometry.is_corner[v])
       (void)fixed(static_cast<Index>(v));
+  for (const auto &[point, region] : geometry.free_points)
+    outline.free_points.push_back({fixed(point), region});
   for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
     const Curve &curve = geometry.curves[c];
     const LengthTable table = Sampler{curve, background, most_edges}.run();
@@ -186,8 +201,10 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
                          (table.total() < most_edges
                               ? std::to_string(static_cast<long>(table.total()))
                               : "more than a billion") +
-                         " edges on a curve with tag " + std::to_string(curve.tag) +
-                         ", more than there may be vertices");
+                         " edges on the curve with tag " + std::to_string(curve.tag) +
+                         " that begins near " + place(curve.at(0)) + ", beside " +
+                         std::to_string(outline.vertices.size()) +
+                         " vertices before it: more than there may be");
     const std::vector<double> t = cut(curve, table, hausdorff);
     // the seam of a loop stays: a parameter must begin somewhere
     Index previous = fixed(curve.vertices.front());
@@ -239,6 +256,32 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
   return changed;
 }
 
+std::vector<Index> edges_before(const Geometry &geometry, const Outline &outline,
+                                const Vector<2> &x) {
+  std::vector<Index> found;
+  std::vector<Vector<2>> lens;
+  for (std::size_t e = 0; e < outline.edges.size(); ++e) {
+    const CurveEdge &edge = outline.edges[e];
+    const Curve &curve = geometry.curves[static_cast<std::size_t>(edge.curve)];
+    lens = {outline.vertices[static_cast<std::size_t>(edge.v1)].x,
+            outline.vertices[static_cast<std::size_t>(edge.v0)].x,
+            curve.on_polyline(edge.t0)};
+    for (double t = std::floor(edge.t0) + 1; t < edge.t1; ++t)
+      lens.push_back(curve.on_polyline(t));
+    lens.push_back(curve.on_polyline(edge.t1));
+    bool is_inside = false; // by the parity of a ray's crossings
+    for (std::size_t k = 0; k < lens.size(); ++k) {
+      const Vector<2> &a = lens[k], &b = lens[(k + 1) % lens.size()];
+      if ((a[1] > x[1]) != (b[1] > x[1]) &&
+          x[0] < a[0] + (x[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+        is_inside = !is_inside;
+    }
+    if (is_inside)
+      found.push_back(static_cast<Index>(e));
+  }
+  return found;
+}
+
 std::vector<Index> conflicts(const Outline &outline) {
   std::vector<Box<2>> boxes(outline.edges.size());
   const auto x = [&](Index v) -> const Vector<2> & {
@@ -272,6 +315,8 @@ std::vector<Index> conflicts(const Outline &outline) {
       }
       return !clashes;
     });
+    for (const FreePoint &free : outline.free_points)
+      clashes = clashes || is_on(x(one.v0), x(one.v1), x(free.point));
     if (clashes)
       found.push_back(static_cast<Index>(e));
   }

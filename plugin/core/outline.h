@@ -6,6 +6,7 @@
 #include "monitor.h"
 #include "triangulation.h"
 
+#include <string>
 #include <vector>
 
 namespace anistar {
@@ -24,6 +25,7 @@ struct Outline {
   std::vector<Index> feature;    ///< dimension of the feature a vertex lies on
   std::vector<Index> background; ///< where its metric was found
   std::vector<CurveEdge> edges;
+  std::vector<FreePoint> free_points; ///< `point` is a vertex here
 };
 
 /// Cuts every curve into edges of equal metric length near 1, none of which leaves the
@@ -46,7 +48,15 @@ struct Outline {
 bool retreat(Geometry &geometry, const Background<2> &background, Outline &outline,
              const std::vector<Index> &edges);
 
-/// Edges that meet others anywhere but at a common end.
+/// "(x, y)", for a message.
+[[nodiscard]] std::string place(const Vector<2> &x);
+
+/// Edges that part x from its place beside the geometry's polyline: x lies between them
+/// and the polyline.
+[[nodiscard]] std::vector<Index>
+edges_before(const Geometry &geometry, const Outline &outline, const Vector<2> &x);
+
+/// Edges that meet others anywhere but at a common end, or a free point.
 [[nodiscard]] std::vector<Index> conflicts(const Outline &outline);
 
 } // namespace anistar

@@ -12,6 +12,8 @@ constexpr double largest_radius = .78;
 constexpr double separation = .6;
 /// Constrained edges shorter than this are not split by refinement.
 constexpr double shortest_split = 1.3;
+/// Nearer than this to a longer edge that cannot be split, nothing is inserted.
+constexpr double least_height = .5;
 /// A cell this much larger than the target whose circumcentre is hidden behind a
 /// constraint is refined at its centroid.
 constexpr double hidden_radius = 3 * largest_radius;
@@ -117,42 +119,57 @@ private:
     const Circumcircle circle = circle_of(cell);
     if (!circle.centre.allFinite())
       return;
-    Vector<2> x = circle.centre;
-    Walk at = walk_to(w_.mesh, cell, x);
-    if (at.cell == none) {
-      if (at.wall.exists() && split(at.wall)) {
-        again(cell, before);
-        return;
-      }
-      if (circle.radius < hidden_radius) {
-        ++counts_.rejected;
-        return;
-      }
+    const Walk at = walk_to(w_.mesh, cell, circle.centre);
+    Offer answer = Offer::walled;
+    if (at.cell != none)
+      answer = offer(circle.centre, at.cell);
+    else if (at.wall.exists() && split(at.wall))
+      answer = Offer::split;
+    else if (circle.radius < hidden_radius)
+      answer = Offer::refused;
+    if (answer == Offer::walled) {
       const Simplex<2> s = w_.mesh.simplex(cell);
-      x = (s[0] + s[1] + s[2]) / 3;
-      at.cell = cell;
+      answer = offer((s[0] + s[1] + s[2]) / 3, cell);
     }
-    Index hint = w_.mesh.background_cell[static_cast<std::size_t>(before[0])];
-    const Vertex<2> vertex = w_.background.vertex(x, hint);
-    for (std::size_t i = 0; i < 3; ++i)
-      if (const HalfFacet edge(at.cell, i); encroaches(vertex, edge)) {
-        const bool is_short = w_.length(edge) < shortest_split;
-        if (split(edge)) {
-          again(cell, before);
-          return;
-        }
-        if (is_short) {
-          ++counts_.rejected;
-          return;
-        } // a long edge that is frozen: its disc must be refined all the same
-      }
-    if (is_crowded(vertex, at.cell) ||
-        insert_in_cell(w_, at.cell, vertex, hint) == none) {
+    switch (answer) {
+    case Offer::taken:
+      ++counts_.inserted;
+      settle();
+      break;
+    case Offer::split:
+      again(cell, before);
+      break;
+    case Offer::walled:
+    case Offer::refused:
       ++counts_.rejected;
-      return;
     }
-    ++counts_.inserted;
-    settle();
+  }
+
+  enum class Offer {
+    taken,
+    split,  ///< a constrained edge instead
+    walled, ///< too near to a long edge that cannot be split
+    refused
+  };
+
+  /// Offers x to the cell that contains it.
+  Offer offer(const Vector<2> &x, Index cell) {
+    Index hint = w_.mesh.background_cell[static_cast<std::size_t>(w_.mesh.at(cell)[0])];
+    const Vertex<2> vertex = w_.background.vertex(x, hint);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const HalfFacet edge(cell, i);
+      if (!encroaches(vertex, edge))
+        continue;
+      if (w_.length(edge) < shortest_split)
+        return Offer::refused;
+      if (split(edge))
+        return Offer::split;
+      if (height(vertex, edge) < least_height)
+        return Offer::walled;
+    }
+    if (is_crowded(vertex, cell) || insert_in_cell(w_, cell, vertex, hint) == none)
+      return Offer::refused;
+    return Offer::taken;
   }
 
   void again(Index cell, const Cell<2> &before) {
@@ -167,6 +184,14 @@ private:
     const auto [a, b] = w_.mesh.facet(edge);
     const Vector<2> u = w_.mesh.vertex(a).x - p.x, v = w_.mesh.vertex(b).x - p.x;
     return product<2>(p.M, u).dot(v) < 0;
+  }
+
+  /// Distance of p from the line of an edge in its own metric.
+  [[nodiscard]] double height(const Vertex<2> &p, HalfFacet edge) const {
+    const auto [ia, ib] = w_.mesh.facet(edge);
+    const Vector<2> &a = w_.mesh.vertex(ia).x, u = w_.mesh.vertex(ib).x - a;
+    const double area = std::abs(cross(u, p.x - a)) / p.weight;
+    return area / std::sqrt(quadratic<2>(p.M, u));
   }
 
   [[nodiscard]] bool is_crowded(const Vertex<2> &p, Index cell) const {

@@ -39,9 +39,8 @@ Cdt insert_outline(const Outline &outline) {
     handle[static_cast<std::size_t>(v->info())] = v;
   for (std::size_t v = 0; v < handle.size(); ++v)
     if (handle[v] == nullptr)
-      throw MeshingError("two points of the geometry coincide at (" +
-                         std::to_string(outline.vertices[v].x[0]) + ", " +
-                         std::to_string(outline.vertices[v].x[1]) + ")");
+      throw MeshingError("two points of the geometry coincide at " +
+                         place(outline.vertices[v].x));
   for (const CurveEdge &edge : outline.edges)
     cdt.insert_constraint(handle[static_cast<std::size_t>(edge.v0)],
                           handle[static_cast<std::size_t>(edge.v1)]);
@@ -130,6 +129,12 @@ MeshOnCurves extract(const Outline &outline, const std::vector<Component> &parts
   return out;
 }
 
+/// Where an edge begins, for a message.
+std::string place_of(const Outline &outline, Index e) {
+  const CurveEdge &edge = outline.edges[static_cast<std::size_t>(e)];
+  return "near " + place(outline.vertices[static_cast<std::size_t>(edge.v0)].x);
+}
+
 void resolve_conflicts(Geometry &geometry, const Background<2> &background,
                        Outline &outline) {
   for (int round = 0; round < max_retreats; ++round) {
@@ -137,20 +142,43 @@ void resolve_conflicts(Geometry &geometry, const Background<2> &background,
     if (clashing.empty())
       return;
     if (!retreat(geometry, background, outline, clashing)) {
-      const CurveEdge &edge = outline.edges[static_cast<std::size_t>(clashing.front())];
-      const Vector<2> x = outline.vertices[static_cast<std::size_t>(edge.v0)].x;
-      throw MeshingError("the facets of the geometry cross near (" +
-                         std::to_string(x[0]) + ", " + std::to_string(x[1]) + ")");
+      throw MeshingError("the facets of the geometry cross " +
+                         place_of(outline, clashing.front()));
     }
   }
-  throw MeshingError("the curves of the geometry still cross after " +
+  throw MeshingError("the curves of the geometry still cross " +
+                     place_of(outline, conflicts(outline).front()) + " after " +
                      std::to_string(max_retreats) + " retreats to its polyline");
+}
+
+/// The curve edges that keep a free point out of its region.
+std::vector<Index> misplaced(const Cdt &cdt, const std::vector<Component> &parts,
+                             const Geometry &geometry, const Outline &outline) {
+  std::vector<Index> found;
+  std::map<Index, Index> wanted;
+  for (const auto &[point, region] : outline.free_points)
+    wanted[point] = region;
+  for (auto v = cdt.finite_vertices_begin();
+       v != cdt.finite_vertices_end() && !wanted.empty(); ++v) {
+    const auto free = wanted.find(v->info());
+    if (free == wanted.end())
+      continue;
+    const Component &part = parts[static_cast<std::size_t>(v->face()->info())];
+    if (part.region.value_or(no_region) == free->second)
+      continue;
+    const auto &x = outline.vertices[static_cast<std::size_t>(v->info())].x;
+    const std::vector<Index> before = edges_before(geometry, outline, x);
+    const std::vector<Index> &blamed = before.empty() ? part.walls : before;
+    found.insert(found.end(), blamed.begin(), blamed.end());
+  }
+  return found;
 }
 
 } // namespace
 
 MeshOnCurves triangulate(Geometry &geometry, const Background<2> &background,
                          Outline outline) {
+  std::vector<Index> wrong;
   for (int round = 0; round < max_retreats; ++round) {
     resolve_conflicts(geometry, background, outline);
     Cdt cdt = insert_outline(outline);
@@ -160,7 +188,7 @@ MeshOnCurves triangulate(Geometry &geometry, const Background<2> &background,
       edge_of[{a, b}] = static_cast<Index>(e);
     }
     const auto parts = components(cdt, outline, edge_of, geometry);
-    std::vector<Index> wrong;
+    wrong = misplaced(cdt, parts, geometry, outline);
     for (const Component &part : parts)
       if (part.contradicts)
         wrong.insert(wrong.end(), part.walls.begin(), part.walls.end());
@@ -171,7 +199,8 @@ MeshOnCurves triangulate(Geometry &geometry, const Background<2> &background,
     if (!retreat(geometry, background, outline, wrong))
       break;
   }
-  throw MeshingError("the facets of the geometry do not enclose its regions");
+  throw MeshingError("the facets of the geometry do not enclose its regions " +
+                     place_of(outline, wrong.front()));
 }
 
 } // namespace anistar

@@ -148,15 +148,14 @@ def _ring(rng):
     """Return a ring between two wavy circles."""
     waves, height = rng.integers(2, 7), rng.uniform(0, 0.3)
     thickness = 10 ** rng.uniform(-2, -0.2)
-    phase = rng.uniform(0, 3)
+    phase = rng.uniform(0, 3) * (rng.random() < 0.5)
 
     def to_plane(u, v):
         angle = 2 * np.pi * u
         inner = 1 - thickness + height * np.cos(waves * angle)
-        outer = 1 + height * np.cos(waves * angle + phase * (rng_same < 0.5))
+        outer = 1 + height * np.cos(waves * angle + phase)
         return _polar(0.5 + inner + v * np.maximum(outer - inner, 0.3 * thickness), angle)
 
-    rng_same = rng.random()
     return _mapped(rng, to_plane, rng.integers(8, 64), rng.integers(1, 4), closed=True)
 
 

@@ -12,12 +12,9 @@ def metric_field(rng, mesh, *, largest=3000.0):
     x = (mesh.points - mesh.points.mean(axis=0)) / size
     angle, log_size, log_ratio = KINDS[kind](rng, x)
     M = _tensors(angle, log_size, log_ratio) / size**2
-    for _ in range(3):  # bounds of the ratio make this less than linear
-        target = 10 ** rng.uniform(0, np.log10(largest))
-        M *= target / complexity(mesh, M)
-        if kind == "graded":
-            M = graded(mesh, M, factor=rng.uniform(1.2, 2))
-        break
+    M *= 10 ** rng.uniform(0, np.log10(largest)) / complexity(mesh, M)
+    if kind == "graded":
+        M = graded(mesh, M, factor=rng.uniform(1.2, 2))
     excess = complexity(mesh, M) / largest
     return kind, M / max(1.0, excess)
 

@@ -1,12 +1,13 @@
 """The long fuzz: random domains and metrics, each judged, in processes that may crash.
 
-``python tests/fuzz/run.py --cases 2000 --seed 0 --seconds 600 --reproducers fuzz-failures`` prints
-a table by kind of domain and of metric, names every failure with its number, and writes its input.
+``python tests/fuzz/run.py --cases 2000 --seed 0 --seconds 600 --reproducers fuzz-failures``
+prints a table by kind of domain and of metric, names every failure and writes its input.
 ``python tests/fuzz/run.py --seed 0 --only 17`` runs one case in this process.
 """
 
 import argparse
 import json
+import re
 import subprocess
 import sys
 import threading
@@ -55,7 +56,7 @@ class _Worker:
         )
         self.lines = Queue()
         threading.Thread(target=self._read, daemon=True).start()
-        self.process.stdin.write(" ".join(map(str, numbers)) + "\n")
+        self.process.stdin.write("\t".join(map(str, numbers)) + "\n")
         self.process.stdin.close()
 
     def _read(self):
@@ -87,7 +88,7 @@ def work(seed, largest):
     """Run the cases whose numbers come on the standard input."""
     from cases import make_case, run_case
 
-    for number in map(int, sys.stdin.readline().split()):
+    for number in map(int, sys.stdin.readline().split("\t")):
         start = time.perf_counter()
         row = {"number": number}
         try:
@@ -101,7 +102,7 @@ def work(seed, largest):
             except Exception as error:
                 row["problem"] = f"{type(error).__name__}: {error}"
         row["seconds"] = time.perf_counter() - start
-        print(json.dumps(row), flush=True)
+        say(json.dumps(row))
 
 
 def write_reproducer(folder, seed, number, largest):
@@ -127,27 +128,30 @@ def print_table(rows):
     groups = defaultdict(list)
     for row in rows:
         if "kind" in row:
-            groups["domain", row["kind"]].append(row)
-            groups["metric", row["metric"]].append(row)
-    print(
-        f"{'':18}{'cases':>7}{'bad':>5}{'refused':>9}{'certified':>11}{'stars ok':>10}{'s max':>7}"
-    )
-    for (what, kind), members in sorted(groups.items()):
-        made = [row for row in members if row.get("n_points")]
-        certified = sum(row.get("reason") == "certified" for row in made)
+            groups["domain " + row["kind"]].append(row)
+            groups["metric " + row["metric"]].append(row)
+    heads = ("", "cases", "bad", "refused", "certified", "stars ok", "s max")
+    say("{:18}{:>7}{:>6}{:>9}{:>11}{:>10}{:>7}".format(*heads))
+    for kind, members in [*sorted(groups.items()), ("all", [r for r in rows if "kind" in r])]:
+        made = [row for row in members if row.get("reason")]
+        certified = np.mean([row["reason"] == "certified" for row in made]) if made else 0.0
         stars = np.mean([row["star_ok"] for row in made]) if made else 0.0
-        print(
-            f"{what + ' ' + kind:18}{len(members):7}"
-            f"{sum(bool(r.get('problem')) for r in members):5}"
-            f"{sum(bool(r.get('error')) for r in members):9}{certified / max(1, len(made)):11.1%}"
-            f"{stars:10.2%}{max(r.get('seconds', 0) for r in members):7.2f}"
+        bad, refused = (sum(bool(r.get(key)) for r in members) for key in ("problem", "error"))
+        slowest = max(row["seconds"] for row in members)
+        say(
+            f"{kind:18}{len(members):7}{bad:6}{refused:9}{certified:11.1%}{stars:10.2%}"
+            f"{slowest:7.2f}"
         )
-    print("reasons:", dict(Counter(row["reason"] for row in rows if row.get("reason"))))
-    print(
-        "refusals:", dict(Counter(row["error"].split("(")[0] for row in rows if row.get("error")))
-    )
-    skipped = Counter(row["skipped"][:60] for row in rows if "skipped" in row)
-    print("not generated:", sum(skipped.values()), dict(skipped.most_common(4)))
+    for name, key in (("reason", "reason"), ("refusal", "error"), ("not generated", "skipped")):
+        texts = (re.sub(r"[-+\d.][-+\d.e]*", "#", row.get(key, "")) for row in rows)
+        for text, count in Counter(filter(None, texts)).most_common(8):
+            say(f"{name}: {count} x {text}")
+
+
+def say(text):
+    """Write a line at once, also into a pipe."""
+    sys.stdout.write(f"{text}\n")
+    sys.stdout.flush()
 
 
 def main():
@@ -168,7 +172,7 @@ def main():
     if options.only is not None:
         from cases import make_case, run_case
 
-        print(run_case(make_case(options.seed, options.only, largest=options.largest)))
+        say(run_case(make_case(options.seed, options.only, largest=options.largest)))
         return 0
     deadline = None if options.seconds is None else time.monotonic() + options.seconds
     numbers = range(options.first, options.first + options.cases)
@@ -182,7 +186,7 @@ def main():
     ):
         rows.append(row)
         if row.get("problem"):
-            print(f"case {row['number']}: {row['problem']}", flush=True)
+            say(f"case {row['number']}: {row['problem']}")
             if options.reproducers:
                 write_reproducer(options.reproducers, options.seed, row["number"], options.largest)
     print_table(rows)
