@@ -151,7 +151,8 @@ def remesh(
     MetricError
         If a tensor is not symmetric positive definite; the point is named.
     MeshingError
-        If the facets of the geometry cross, or a tag would be lost.
+        If the facets of the geometry cross, the geometry is not the domain of `mesh`, or a tag
+        would be lost.
 
     References
     ----------
@@ -229,7 +230,8 @@ def _call_core(
             options.callback,
         )
     except _core.MeshingError as error:
-        raise MeshingError(str(error)) from None
+        message, x, y = error.args
+        raise MeshingError(f"{message} near ({x / scale:g}, {y / scale:g})") from None
 
 
 def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:

@@ -1,6 +1,8 @@
 #pragma once
 // What stops a long call: the user, a clock, a budget.
 
+#include "tensor.h"
+
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -24,10 +26,16 @@ enum class StopReason { finished, max_vertices, max_seconds };
   return "unknown";
 }
 
-/// Failure to make a mesh; the message says where.
+/// Failure to make a mesh. The place is apart from the message, because the caller may
+/// measure in other units.
 class MeshingError : public std::runtime_error {
 public:
-  using std::runtime_error::runtime_error;
+  MeshingError(const std::string &message, const Vector<2> &place)
+      : std::runtime_error(message), place_(place) {}
+  [[nodiscard]] const Vector<2> &place() const { return place_; }
+
+private:
+  Vector<2> place_;
 };
 
 /// Asked now and then by every long loop.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace anistar {
 namespace {
@@ -131,12 +130,6 @@ bool segments_meet(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p,
 
 } // namespace
 
-std::string place(const Vector<2> &x) {
-  std::ostringstream text;
-  text << '(' << x[0] << ", " << x[1] << ')';
-  return text.str();
-}
-
 double middle(const Curve &curve, double t0, double t1) {
   const Vector<2> a = curve.at(t0), b = curve.at(t1);
   double low = t0, high = t1;
@@ -198,13 +191,14 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
         !monitor.has_room(outline.vertices.size() +
                           static_cast<std::size_t>(table.total())))
       throw MeshingError("the metric asks for " +
-                         (table.total() < most_edges
-                              ? std::to_string(static_cast<long>(table.total()))
-                              : "more than a billion") +
-                         " edges on the curve with tag " + std::to_string(curve.tag) +
-                         " that begins near " + place(curve.at(0)) + ", beside " +
-                         std::to_string(outline.vertices.size()) +
-                         " vertices before it: more than there may be");
+                             (table.total() < most_edges
+                                  ? std::to_string(static_cast<long>(table.total()))
+                                  : "more than a billion") +
+                             " edges on the curve with tag " +
+                             std::to_string(curve.tag) + ", beside " +
+                             std::to_string(outline.vertices.size()) +
+                             " vertices before it, more than there may be; it begins",
+                         curve.at(0));
     const std::vector<double> t = cut(curve, table, hausdorff);
     // the seam of a loop stays: a parameter must begin somewhere
     Index previous = fixed(curve.vertices.front());

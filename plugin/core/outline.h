@@ -48,9 +48,6 @@ struct Outline {
 bool retreat(Geometry &geometry, const Background<2> &background, Outline &outline,
              const std::vector<Index> &edges);
 
-/// "(x, y)", for a message.
-[[nodiscard]] std::string place(const Vector<2> &x);
-
 /// Edges that part x from its place beside the geometry's polyline: x lies between them
 /// and the polyline.
 [[nodiscard]] std::vector<Index>

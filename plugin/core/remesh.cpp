@@ -28,7 +28,7 @@ constexpr double largest_agreeing_distortion = .6;
 
 /// A geometry that reaches further beyond the mesh that carries the metric than this
 /// fraction of its extent is another domain.
-constexpr double largest_gap = .1;
+constexpr double largest_gap = .25;
 
 void check_gap(const Background<2> &background, const Outline &outline) {
   Box<2> box;
@@ -39,10 +39,11 @@ void check_gap(const Background<2> &background, const Outline &outline) {
     const Vector<2> &x = outline.vertices[v].x;
     const double gap = background.distance(x, outline.background[v]);
     if (gap > largest_gap * extent)
-      throw std::invalid_argument(
-          "the geometry reaches beyond the mesh that carries the metric by " +
-          std::to_string(gap / extent) + " of its extent, more than " +
-          std::to_string(largest_gap));
+      throw MeshingError(
+          "the geometry reaches beyond the mesh that carries the metric, by " +
+              std::to_string(gap / extent) + " of its extent where " +
+              std::to_string(largest_gap) + " is allowed,",
+          x);
   }
 }
 

@@ -39,8 +39,7 @@ Cdt insert_outline(const Outline &outline) {
     handle[static_cast<std::size_t>(v->info())] = v;
   for (std::size_t v = 0; v < handle.size(); ++v)
     if (handle[v] == nullptr)
-      throw MeshingError("two points of the geometry coincide at " +
-                         place(outline.vertices[v].x));
+      throw MeshingError("two points of the geometry coincide", outline.vertices[v].x);
   for (const CurveEdge &edge : outline.edges)
     cdt.insert_constraint(handle[static_cast<std::size_t>(edge.v0)],
                           handle[static_cast<std::size_t>(edge.v1)]);
@@ -130,9 +129,9 @@ MeshOnCurves extract(const Outline &outline, const std::vector<Component> &parts
 }
 
 /// Where an edge begins, for a message.
-std::string place_of(const Outline &outline, Index e) {
+Vector<2> place_of(const Outline &outline, Index e) {
   const CurveEdge &edge = outline.edges[static_cast<std::size_t>(e)];
-  return "near " + place(outline.vertices[static_cast<std::size_t>(edge.v0)].x);
+  return outline.vertices[static_cast<std::size_t>(edge.v0)].x;
 }
 
 void resolve_conflicts(Geometry &geometry, const Background<2> &background,
@@ -142,13 +141,14 @@ void resolve_conflicts(Geometry &geometry, const Background<2> &background,
     if (clashing.empty())
       return;
     if (!retreat(geometry, background, outline, clashing)) {
-      throw MeshingError("the facets of the geometry cross " +
+      throw MeshingError("the facets of the geometry cross",
                          place_of(outline, clashing.front()));
     }
   }
-  throw MeshingError("the curves of the geometry still cross " +
-                     place_of(outline, conflicts(outline).front()) + " after " +
-                     std::to_string(max_retreats) + " retreats to its polyline");
+  throw MeshingError(
+      "after " + std::to_string(max_retreats) +
+          " retreats to the polyline the curves of the geometry still cross",
+      place_of(outline, conflicts(outline).front()));
 }
 
 /// The curve edges that keep a free point out of its region.
@@ -199,7 +199,7 @@ MeshOnCurves triangulate(Geometry &geometry, const Background<2> &background,
     if (!retreat(geometry, background, outline, wrong))
       break;
   }
-  throw MeshingError("the facets of the geometry do not enclose its regions " +
+  throw MeshingError("the facets of the geometry do not enclose its regions",
                      place_of(outline, wrong.front()));
 }
 

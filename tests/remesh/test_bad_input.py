@@ -129,3 +129,19 @@ def test_a_mesh_that_lost_a_tag_is_an_error(kind, changes):
     lost[changes] = np.zeros_like(lost[changes])
     with pytest.raises(MeshingError, match=f"the new mesh lost {kind} tag "):
         tag_measures(mesh, Mesh._trusted(**lost))
+
+
+def test_a_geometry_that_is_another_domain_is_refused_with_a_place():
+    mesh = square(4)
+    other = Mesh(points=mesh.points + 5.0, cells=mesh.cells)
+    message = r"the geometry reaches beyond the mesh that carries the metric, .* near \(\d"
+    with pytest.raises(MeshingError, match=message):
+        remesh(mesh, np.tile(100 * np.eye(2), (mesh.n_points, 1, 1)), geometry=other)
+
+
+def test_the_place_in_a_message_is_in_the_units_of_the_mesh():
+    mesh = square(4)
+    far = Mesh(points=1000 * mesh.points + 3000, cells=mesh.cells)
+    M = np.tile(1e12 * np.eye(2), (mesh.n_points, 1, 1))
+    with pytest.raises(MeshingError, match=r"near \((3|4)000, (3|4)000\)"):
+        remesh(far, M, RemeshOptions(max_vertices=10))

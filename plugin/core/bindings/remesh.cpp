@@ -174,7 +174,18 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
 } // namespace
 
 void bind_remesh(nb::module_ &module) {
-  nb::exception<MeshingError>(module, "MeshingError", PyExc_RuntimeError);
+  static nb::handle error_type =
+      PyErr_NewException("anistar._core.MeshingError", PyExc_RuntimeError, nullptr);
+  module.attr("MeshingError") = error_type;
+  nb::register_exception_translator([](const std::exception_ptr &thrown, void *) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const MeshingError &error) {
+      const auto arguments =
+          nb::make_tuple(error.what(), error.place()[0], error.place()[1]);
+      PyErr_SetObject(error_type.ptr(), arguments.ptr());
+    }
+  });
   module.def(
       "remesh2", &remesh2, nb::arg("points").noconvert(), nb::arg("cells").noconvert(),
       nb::arg("metric").noconvert(), nb::arg("geometry_points").noconvert(),
