@@ -4,8 +4,8 @@ namespace anistar {
 namespace {
 
 /// What a relocation must keep, unless it was worse before.
-constexpr double quality_floor = .45;
-constexpr double shortest_kept = .6, longest_kept = 1.6;
+constexpr double quality_floor = .5;
+constexpr double shortest_kept = .64, longest_kept = 1.5;
 /// |ln l| up to here is free: a little inside the bounds of a unit edge.
 const double unit_excess = std::log(longest_unit) - .03;
 

@@ -9,7 +9,7 @@
 namespace anistar {
 namespace {
 
-constexpr int max_rounds = 6;
+constexpr int max_rounds = 4;
 /// Trial places of each vertex that could mend a failure.
 constexpr int n_candidates = 16;
 constexpr double radius = .3;
@@ -23,8 +23,8 @@ public:
         test_({mesh_.vertices, mesh_.cells, mesh_.neighbours, mesh_.constraints}),
         seen_(mesh_.cells.size(), 0) {}
 
-  /// Moves one vertex of a failing cell, or the vertex inside its ball, such that fewer
-  /// cells around fail. @returns whether it found a move.
+  /// Moves the vertex inside the ball of a failing cell, one of its own or one across
+  /// its edges, such that fewer cells around fail. @returns whether it found a move.
   bool mend(Index cell, int round) {
     std::vector<Index> culprits;
     for (Index v : mesh_.at(cell)) {
@@ -36,6 +36,9 @@ public:
     if (culprits.empty())
       return false; // an earlier move has mended it
     culprits.insert(culprits.end(), mesh_.at(cell).begin(), mesh_.at(cell).end());
+    for (std::size_t i = 0; i < 3; ++i)
+      if (const HalfFacet beyond = mesh_.opposite(HalfFacet(cell, i)); beyond.exists())
+        culprits.push_back(mesh_.apex(beyond));
     for (Index v : culprits)
       if (mesh_.feature[static_cast<std::size_t>(v)] == Triangulation<2>::interior &&
           move(v, round))

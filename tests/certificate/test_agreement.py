@@ -64,7 +64,7 @@ def test_agreement_is_skipped_with_its_reason_where_the_metric_turns_too_fast():
     M = R @ np.diag([2e4, 5e2]) @ R.transpose(0, 2, 1)
     done = remesh(mesh, M)
     assert done.report.agreement.startswith("skipped: the metric varies too fast")
-    assert done.report.distortion["p99"] > 0.6
+    assert done.report.distortion["p99"] > 0.7
     assert 0.0 < done.report.star_ok < 1.0
     assert anistar.validate(done.mesh, mesh) == []
 
@@ -78,11 +78,12 @@ def test_agreement_off_leaves_the_stars_unchecked():
 
 
 def test_algorithm_2_ends_consistent_and_counts_vertices_by_rule():
-    mesh, M = adapted(factor=None)
+    mesh, M = adapted(factor=3.0)
     plain = remesh(mesh, M, RemeshOptions(agreement=False))
     done = remesh(mesh, M, RemeshOptions(agreement=True, until_consistent=True))
     counts = done.report.consistency
     assert counts["stop_reason"] == "consistent"
+    assert counts["inconsistency"] > 0
     assert anistar.certify(done.mesh, done.metric).star_ok.all()
     assert done.mesh.n_points <= 1.06 * plain.mesh.n_points
     assert anistar.validate(done.mesh, mesh) == []
