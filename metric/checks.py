@@ -42,6 +42,8 @@ def check_metric(
     MetricError
         If the shape is wrong, or a tensor is not finite, not symmetric or not positive
         definite; the first such point is named.
+    TypeError
+        If the values are not real numbers.
     """
     tensors = check_tensors(M, n_points=n_points, dim=dim, name=name)
     smallest = eigenvalues(tensors)[:, 0]
@@ -58,7 +60,10 @@ def check_tensors(
     T: ArrayLike, *, n_points: int | None = None, dim: int | None = None, name: str = "tensor"
 ) -> NDArray[np.float64]:
     """Return finite symmetric tensors (n, d, d) as a new symmetric array, or raise MetricError."""
-    tensors = np.array(T, dtype=np.float64, order="C")
+    given = np.asarray(T)
+    if given.dtype.kind not in "biuf":
+        raise TypeError(f"{name} must hold real numbers, not {given.dtype}")
+    tensors = np.array(given, dtype=np.float64, order="C")
     if tensors.ndim != 3 or tensors.shape[1] != tensors.shape[2] or tensors.shape[1] not in (2, 3):
         raise MetricError(f"{name} must have shape (n, 2, 2) or (n, 3, 3), got {tensors.shape}")
     if dim is not None and tensors.shape[1] != dim:

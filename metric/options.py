@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .aliases import flattened, our_name, our_value
 from .bounds import check_bounds
 from .complexity import ELEMENTS_PER_COMPLEXITY
 from .gradation import DEFAULT_FACTORS, check_gradation
@@ -16,9 +17,6 @@ from .normalisation import check_normalisation
 from .recovery import check_method
 
 Bound = float | NDArray[np.float64] | None
-
-PETSC_PREFIX = "dm_plex_metric"
-MMG_ALIASES = {"hmin": "h_min", "hmax": "h_max", "hgrad": "gradation_factor"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,20 +89,15 @@ class MetricOptions:
         """
         known = {field.name for field in fields(cls)}
         found: dict[str, Any] = {}
-        for key, value in _flat(options):
-            name = MMG_ALIASES.get(key, key.removeprefix(PETSC_PREFIX + "_"))
+        for key, value in flattened(options):
+            name = our_name(key)
             if name not in known:
                 raise ValueError(
                     f"unknown metric option '{key}'; known: {', '.join(sorted(known))}"
                 )
             if name in found:
                 raise ValueError(f"metric option '{name}' is given twice, the second as '{key}'")
-            foreign = name != key
-            off = foreign and (
-                (name == "gradation_factor" and value is not None and value < 0)
-                or (name == "a_max" and value is not None and value == 0)
-            )
-            found[name] = None if off else value
+            found[name] = value if name == key else our_value(name, value)
         return cls(**found)
 
     def complexity_for(self, dim: int) -> float:
@@ -119,20 +112,10 @@ class MetricOptions:
             return self.target_complexity
         if self.target_elements is not None:
             return self.target_elements / ELEMENTS_PER_COMPLEXITY[dim]
-        raise ValueError("give target_complexity or target_elements in MetricOptions, got neither")
+        raise ValueError("give target_complexity or target_elements, got neither")
 
     def gradation_for(self, dim: int) -> float | None:
         """Return the gradation factor in dimension `dim`."""
         if isinstance(self.gradation_factor, str):
             return DEFAULT_FACTORS[dim]
         return self.gradation_factor
-
-
-def _flat(options: Mapping[str, Any]) -> list[tuple[str, Any]]:
-    pairs: list[tuple[str, Any]] = []
-    for key, value in options.items():
-        if key == PETSC_PREFIX and isinstance(value, Mapping):
-            pairs += [(f"{PETSC_PREFIX}_{inner}", v) for inner, v in value.items()]
-        else:
-            pairs.append((key, value))
-    return pairs

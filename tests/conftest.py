@@ -13,3 +13,9 @@ settings.register_profile(
 )
 settings.register_profile("fuzz", derandomize=False, deadline=None, max_examples=2000)
 settings.load_profile("repeatable")
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--refresh-golden", action="store_true", help="write the topologies kept as text anew"
+    )

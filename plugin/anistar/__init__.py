@@ -2,14 +2,15 @@
 
 from . import metric
 from .adapt import Adapted, AdaptOptions, adapt
-from .certificate import Certificate, certify
+from .certificate import Certificate, SimplexOfStar, certify, explain_star
+from .consistency import ConsistencyOptions
 from .errors import FormatError, MeshingError
 from .fields import Field
 from .formats import read, write
 from .loop import Loop, LoopError, LoopOptions, Step, adapt_loop
 from .mesh import Mesh
 from .metric import MetricError, MetricOptions
-from .remesh import ConsistencyOptions, Remeshed, RemeshOptions, remesh
+from .remesh import Remeshed, RemeshOptions, remesh
 from .study import Study, convergence_study
 from .transfer import TransferOptions, Transferred, transfer
 from .validation import Violation, validate
@@ -30,6 +31,7 @@ __all__ = [
     "MetricOptions",
     "RemeshOptions",
     "Remeshed",
+    "SimplexOfStar",
     "Step",
     "Study",
     "TransferOptions",
@@ -39,6 +41,7 @@ __all__ = [
     "adapt_loop",
     "certify",
     "convergence_study",
+    "explain_star",
     "metric",
     "read",
     "remesh",

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .aliases import STAGES, canonical
+from .aliases import canonical
 from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import MetricOptions, from_fields
+from .options import require
 from .remesh import RemeshOptions, remesh
-from .report import as_builtin, fields_of
+from .report import attributes
 from .transfer import TransferOptions, TransferReport, transfer
 
 Floats = NDArray[np.float64]
 Projection = Callable[[Floats, int], Floats]
+
+STAGES = ("metric", "remesh", "transfer")
 
 
 def _transfer_to_a_remesh() -> TransferOptions:
@@ -46,7 +49,8 @@ class AdaptOptions:
     Raises
     ------
     TypeError
-        If `metric_fields` is a string or holds something else than strings.
+        If a stage has options of another class, or `metric_fields` is a string or holds
+        something else than strings.
     ValueError
         If `metric_fields` is empty.
     """
@@ -57,6 +61,9 @@ class AdaptOptions:
     metric_fields: Sequence[str] | None = None
 
     def __post_init__(self) -> None:
+        require(MetricOptions, metric=self.metric)
+        require(RemeshOptions, remesh=self.remesh)
+        require(TransferOptions, transfer=self.transfer)
         names = self.metric_fields
         if names is None:
             return
@@ -75,7 +82,8 @@ class AdaptOptions:
         options : mapping
             Options of any stage by name, for instance ``{"target_complexity": 1e4}``,
             ``{"dm_plex_metric": {"h_min": 1e-3}}`` or ``{"hmin": 1e-3}``; the stages ``metric``,
-            ``remesh`` and ``transfer`` may also be given as mappings.
+            ``remesh`` and ``transfer`` may also be given as mappings. A plain ``method`` is that
+            of the metric.
 
         Raises
         ------
@@ -83,16 +91,12 @@ class AdaptOptions:
             If a name is unknown or given twice.
         """
         defaults = cls()
-        owners = {
-            item.name: stage for stage in STAGES for item in fields_of(getattr(defaults, stage))
+        known = {
+            stage: [item.name for item in fields(getattr(defaults, stage))] for stage in STAGES
         }
-        chosen: dict[str, dict[str, Any]] = {stage: {} for stage in STAGES}
-        known = canonical(options, (*owners, "metric_fields"))
-        names = known.pop("metric_fields", None)
-        for name, value in known.items():
-            chosen[owners[name]][name] = value
+        chosen = canonical(options, {**known, "adapt": ["metric_fields"]})
         made = {stage: replace(getattr(defaults, stage), **chosen[stage]) for stage in STAGES}
-        return cls(**made, metric_fields=names)
+        return cls(**made, **chosen["adapt"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +125,7 @@ class AdaptReport:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
-        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+        return attributes(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,6 +175,7 @@ def adapt(
     """
     started = time.perf_counter()
     options = options if options is not None else AdaptOptions()
+    require(AdaptOptions, options=options)
     checked = as_fields(mesh, fields)
     names = metric_field_names(checked, options.metric_fields)
     M, ledger = from_fields(mesh, {name: checked[name] for name in names}, options.metric)

@@ -3,31 +3,29 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from .metric.options import MMG_ALIASES, PETSC_PREFIX
-
-STAGES = ("metric", "remesh", "transfer")
+from .metric.aliases import MMG_ALIASES, flattened, our_name, our_value
 
 #: Mmg's spelling of an option, and ours.
 MMG = {**MMG_ALIASES, "hausd": "hausdorff_number", "ar": "ridge_angle"}
 
-#: Values by which other codes say "off", where we say None.
-_OFF = {"gradation_factor": -1, "a_max": 0}
+Known = Mapping[str, Sequence[str]]
 
 
-def canonical(options: Mapping[str, Any], known: Iterable[str]) -> dict[str, Any]:
-    """Return the options under our names.
+def canonical(options: Mapping[str, Any], known: Known) -> dict[str, dict[str, Any]]:
+    """Return the options under our names, sorted by the stage they belong to.
 
     Parameters
     ----------
     options : mapping
         Options under our names, PETSc's (flat ``dm_plex_metric_*``, or nested below
-        ``dm_plex_metric``) or Mmg's, or nested below ``metric``, ``remesh`` or ``transfer``.
-        PETSc's and Mmg's values for "off" (gradation -1, anisotropy 0) become None.
-    known : iterable of str
-        Our names.
+        ``dm_plex_metric``) or Mmg's, or nested below the name of a stage. PETSc's and Mmg's
+        values for "off" (gradation -1, anisotropy 0) become None.
+    known : mapping of str to sequence of str
+        Our names by stage. A name that several stages have belongs to the first of them, unless
+        it is nested below another.
 
     Raises
     ------
@@ -36,36 +34,32 @@ def canonical(options: Mapping[str, Any], known: Iterable[str]) -> dict[str, Any
     TypeError
         If a group is not a mapping.
     """
-    names = tuple(known)
-    found: dict[str, Any] = {}
-    for given, value in _flattened(options):
-        name = MMG.get(given, given.removeprefix(PETSC_PREFIX + "_"))
-        if name not in names:
-            raise ValueError(_unknown(given, names))
-        if name in found:
+    found: dict[str, dict[str, Any]] = {stage: {} for stage in known}
+    for stages, given, value in _placed(options, tuple(known)):
+        name = our_name(given, MMG)
+        owner = next((stage for stage in stages if name in known[stage]), None)
+        if owner is None:
+            raise ValueError(_unknown(given, [item for stage in stages for item in known[stage]]))
+        if name in found[owner]:
             raise ValueError(f"option {name!r} is given twice (here as {given!r})")
-        found[name] = None if name != given and _is_off(name, value) else value
+        found[owner][name] = value if name == given else our_value(name, value)
     return found
 
 
-def _flattened(options: Mapping[str, Any]) -> Iterable[tuple[str, Any]]:
-    for key, value in options.items():
-        if key == PETSC_PREFIX or key in STAGES:
+def _placed(
+    options: Mapping[str, Any], stages: tuple[str, ...]
+) -> Iterable[tuple[tuple[str, ...], str, Any]]:
+    """Yield each option with the stages that it may belong to."""
+    for key, value in flattened(options):
+        if key in stages:
             if not isinstance(value, Mapping):
                 raise TypeError(f"option group {key!r} must be a mapping, not {value!r}")
-            prefix = f"{PETSC_PREFIX}_" if key == PETSC_PREFIX else ""
-            yield from ((prefix + name, item) for name, item in value.items())
+            yield from (((key,), name, item) for name, item in flattened(value))
         else:
-            yield str(key), value
+            yield stages, key, value
 
 
-def _is_off(name: str, value: Any) -> bool:
-    if name not in _OFF or isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    return value == _OFF[name]
-
-
-def _unknown(name: str, known: tuple[str, ...]) -> str:
+def _unknown(name: str, known: Sequence[str]) -> str:
     near = difflib.get_close_matches(name, (*known, *MMG), n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"options: {', '.join(sorted(known))}"
+    hint = f"did you mean {near[0]!r}?" if near else f"options: {', '.join(sorted(set(known)))}"
     return f"unknown option {name!r}: {hint}"

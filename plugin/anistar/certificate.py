@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .mesh import Mesh
 from .metric import check_metric
-from .report import as_builtin, fields_of
+from .report import as_builtin, attributes
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
@@ -132,7 +132,7 @@ class SimplexOfStar:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins; the keys are those of the attributes."""
-        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+        return attributes(self)
 
 
 def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:

@@ -20,7 +20,7 @@ from .loop import Loop, LoopOptions, Step, adapt_loop
 from .mesh import Mesh
 from .metric import MetricOptions
 from .remesh import RemeshOptions, remesh
-from .report import as_builtin, fields_of, write_json
+from .report import attributes, write_json
 from .series import write_series
 from .study import observed_order
 from .topology import cell_volumes
@@ -103,7 +103,7 @@ class Demo:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
-        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+        return attributes(self)
 
 
 def stages(complexities: Sequence[float] = COMPLEXITIES) -> int:

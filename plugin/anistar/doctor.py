@@ -14,7 +14,7 @@ import numpy as np
 from .adapt import AdaptOptions, adapt
 from .mesh import Mesh
 from .metric import MetricOptions
-from .report import as_builtin, fields_of
+from .report import attributes
 from .validation import validate
 
 REQUIRED = ("numpy", "scipy", "meshio", "rich")
@@ -64,11 +64,10 @@ class Diagnosis:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only: `is_sound` and `findings`."""
-        rows = [
-            {item.name: as_builtin(getattr(finding, item.name)) for item in fields_of(finding)}
-            for finding in self.findings
-        ]
-        return {"is_sound": self.is_sound, "findings": rows}
+        return {
+            "is_sound": self.is_sound,
+            "findings": [attributes(finding) for finding in self.findings],
+        }
 
 
 def diagnose() -> Diagnosis:

@@ -49,7 +49,9 @@ def function_of_position(text: str) -> Callable[[Floats], Floats]:
 
     def evaluated(points: Floats) -> Floats:
         places = dict(zip(_NAMES, np.moveaxis(points, -1, 0), strict=False))
-        value = np.asarray(_value(tree, places), dtype=np.float64)
+        # Whoever gets the values looks for NaN and infinity, and can say where they are.
+        with np.errstate(all="ignore"):
+            value = np.asarray(_value(tree, places), dtype=np.float64)
         return np.broadcast_to(value, points.shape[:-1])
 
     evaluated(np.full((1, 3), 0.5))

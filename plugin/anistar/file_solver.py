@@ -10,7 +10,7 @@ from typing import Any
 
 from .errors import FormatError
 from .fields import Field
-from .formats import read, write
+from .formats import read_with_report, write
 from .mesh import Mesh
 
 #: Suffix of the mesh file, and that of the solution file.
@@ -64,12 +64,16 @@ class FileSolver:
         if not solution_file.is_file():
             raise RuntimeError(f"the solver wrote no {solution_file}")
         # A medit solution has no mesh: it is read with the mesh of the same name.
-        solved, found = read(solution_file if self.kind == "vtu" else mesh_file)
+        source = solution_file if self.kind == "vtu" else mesh_file
+        solved, found, report = read_with_report(source)
         if solved.n_points != mesh.n_points or solved.n_cells != mesh.n_cells:
             raise FormatError(
                 f"{solution_file} has {solved.n_points} points and {solved.n_cells} cells, the "
                 f"mesh has {mesh.n_points} and {mesh.n_cells}"
             )
+        if not found:
+            reason = "; ".join(report.warnings) or "it holds no field"
+            raise FormatError(f"no fields in {solution_file}: {reason}")
         self.count += 1
         return found
 

@@ -17,6 +17,7 @@ from .errors import MeshingError
 from .fields import Field, as_fields
 from .interpolation_error import interpolation_error
 from .mesh import Mesh
+from .options import require
 from .report import as_builtin
 
 Fields = Mapping[str, Field | ArrayLike]
@@ -66,6 +67,7 @@ class LoopOptions:
     max_iterations: int = 20
 
     def __post_init__(self) -> None:
+        require(AdaptOptions, adapt=self.adapt)
         if self.complexities is not None:
             values = tuple(float(value) for value in self.complexities)
             for index, value in enumerate(values):
@@ -214,6 +216,7 @@ def adapt_loop(
         If `solve` raises or returns what no metric can be made of, or the mesher fails. The
         message names the iteration; the exception carries the finished steps.
     """
+    require(LoopOptions, options=options)
     geometry = geometry if geometry is not None else mesh
     steps: list[Step] = []
     state = _State(0, None, mesh, {}, None, None)

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .certificate import Certificate
 from .mesh import Mesh
 from .topology import unique_edges
 
 try:
-    from matplotlib.collections import LineCollection
+    from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.figure import Figure
     from matplotlib.path import Path as Outline
     from matplotlib.tri import Triangulation
@@ -44,6 +45,44 @@ def mesh_picture(path: str | os.PathLike[str], mesh: Mesh, *, box: Box | None = 
     """
     figure, axes = _canvas(mesh, box)
     _draw_edges(axes, mesh, width=0.35)
+    _draw_boundary(axes, mesh)
+    _save(figure, path)
+
+
+def certificate_picture(
+    path: str | os.PathLike[str],
+    mesh: Mesh,
+    certificate: Certificate,
+    *,
+    box: Box | None = None,
+) -> None:
+    """Draw the edges of a mesh, and in red the triangles that are not certified.
+
+    Parameters
+    ----------
+    path : path
+        A PNG, SVG or PDF file.
+    mesh : Mesh
+        A 2D mesh.
+    certificate : Certificate
+        The certificate of this mesh.
+    box : (x_min, x_max, y_min, y_max), optional
+        Part to show; all of it by default.
+
+    Raises
+    ------
+    ValueError
+        If the certificate is of another mesh.
+    """
+    if len(certificate.simplex_ok) != mesh.n_cells:
+        raise ValueError(
+            f"the certificate is of {len(certificate.simplex_ok)} triangles, "
+            f"the mesh has {mesh.n_cells}"
+        )
+    figure, axes = _canvas(mesh, box)
+    failing = mesh.points[mesh.cells[~certificate.simplex_ok]]
+    axes.add_collection(PolyCollection(list(failing), facecolors=ACCENT, edgecolors="none"))
+    _draw_edges(axes, mesh, width=0.7)
     _draw_boundary(axes, mesh)
     _save(figure, path)
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .mesh import Mesh
-from .report import as_builtin, fields_of
+from .report import attributes
 from .topology import cell_volumes, unique_edges
 
 Floats = NDArray[np.float64]
@@ -34,10 +34,10 @@ class Quality:
     ----------
     points, cells, edges : int
         Counts.
-    unit_edges : float
-        Fraction of edges with a length in [1/sqrt(2), sqrt(2)].
+    unit_edges : float or None
+        Fraction of edges with a length in [1/sqrt(2), sqrt(2)]; None without a metric.
     shortest_edge, mean_edge, longest_edge : float
-        Lengths in the metric.
+        Lengths in the metric; without one, in mesh units.
     worst_quality, mean_quality : float
         Mean ratio, 1 for the equilateral simplex in the metric.
     """
@@ -45,7 +45,7 @@ class Quality:
     points: int
     cells: int
     edges: int
-    unit_edges: float
+    unit_edges: float | None
     shortest_edge: float
     mean_edge: float
     longest_edge: float
@@ -54,7 +54,7 @@ class Quality:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
-        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+        return attributes(self)
 
 
 def quality(mesh: Mesh, M: Floats | None = None) -> Quality:
@@ -66,8 +66,9 @@ def quality(mesh: Mesh, M: Floats | None = None) -> Quality:
     M : (n, d, d) float64, optional
         Metric at the points; the identity by default.
     """
-    metric = np.broadcast_to(np.eye(mesh.dim), (mesh.n_points, mesh.dim, mesh.dim))
-    M = metric if M is None else M
+    is_given = M is not None
+    if M is None:
+        M = np.broadcast_to(np.eye(mesh.dim), (mesh.n_points, mesh.dim, mesh.dim))
     edges = unique_edges(mesh.cells, mesh.n_points)
     lengths, ratios = metric_lengths(mesh, M, edges), mean_ratios(mesh, M)
     unit = (lengths >= UNIT[0]) & (lengths <= UNIT[1])
@@ -75,7 +76,7 @@ def quality(mesh: Mesh, M: Floats | None = None) -> Quality:
         points=mesh.n_points,
         cells=mesh.n_cells,
         edges=len(edges),
-        unit_edges=float(unit.mean()),
+        unit_edges=float(unit.mean()) if is_given else None,
         shortest_edge=float(lengths.min()),
         mean_edge=float(lengths.mean()),
         longest_edge=float(lengths.max()),

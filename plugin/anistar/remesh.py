@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .consistency import ConsistencyOptions
 from .errors import MeshingError
 from .mesh import Mesh
 from .metric import check_metric
-from .topology import cell_volumes, facet_measures, measure_by_tag
+from .options import require
+from .remesh_report import RemeshReport, report_of
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
@@ -25,54 +27,6 @@ Callback = Callable[[str, float], object]
 """``callback(phase, fraction)``, called now and then; an exception it raises ends the call."""
 
 UNLIMITED = 2**62
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ConsistencyOptions:
-    """Parameters of Algorithm 2, named as in Boissonnat, Wormser, Yvinec, RR-7712 v2.
-
-    Parameters
-    ----------
-    alpha_0 : float
-        Rule 1 refines a simplex whose circumradius is at least ``alpha_0 * sf``; the sizing
-        field sf is 1 in the metric, less where ``gamma_0`` asks for it. A unit equilateral
-        triangle has .577, so .95 leaves a quasi-unit mesh alone.
-    rho_0 : float
-        Rule 2: largest radius-edge ratio; above sqrt 2, the classical bound for termination.
-    sigma_0 : float
-        Rule 3: smallest sliverity. In 2D a triangle that passes rule 2 is never a sliver.
-    gamma_0 : float or None
-        Bound on the distortion within an element, through the sizing field. None, the
-        default, is off: measured, it only adds points.
-    delta : float
-        Radius of the picking region relative to the circumradius.
-    beta : float
-        New quasi-cospherical configurations count up to ``beta`` circumradii.
-    candidates : int
-        Points that pick_valid tries before it takes the best one.
-    max_growth : float
-        The run stops when it has added this fraction of vertices.
-    """
-
-    alpha_0: float = 0.95
-    rho_0: float = 1.5
-    sigma_0: float = 0.05
-    gamma_0: float | None = None
-    delta: float = 0.4
-    beta: float = 2.0
-    candidates: int = 16
-    max_growth: float = 1.0
-
-    def __post_init__(self) -> None:
-        for name in ("alpha_0", "rho_0", "sigma_0", "beta", "max_growth"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
-        if not 0 < self.delta < 1:
-            raise ValueError(f"delta must be in (0, 1), got {self.delta}")
-        if self.gamma_0 is not None and not self.gamma_0 > 1:
-            raise ValueError(f"gamma_0 must be above 1, got {self.gamma_0}")
-        if self.candidates < 1:
-            raise ValueError(f"candidates must be at least 1, got {self.candidates}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,6 +77,10 @@ class RemeshOptions:
     callback: Callback | None = None
 
     def __post_init__(self) -> None:
+        for name in ("max_vertices", "seed", "threads"):
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, int | np.integer):
+                raise TypeError(f"{name} must be an integer, got {value!r}")
         if self.max_vertices is not None and self.max_vertices < 3:
             raise ValueError(f"max_vertices must be at least 3, got {self.max_vertices}")
         if self.max_seconds is not None and not self.max_seconds > 0:
@@ -141,77 +99,6 @@ class RemeshOptions:
             raise ValueError(f"seed must be in [0, 2**64), got {self.seed}")
         if not 1 <= self.threads <= 256:
             raise ValueError(f"threads must be in [1, 256], got {self.threads}")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TagMeasure:
-    """Length, area or volume that a tag carries, in the geometry and in the new mesh."""
-
-    dim: int
-    tag: int
-    name: str
-    before: float
-    after: float
-
-    @property
-    def change(self) -> float:
-        """Relative change of the measure."""
-        return self.after / self.before - 1.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RemeshReport:
-    """What `remesh` did and how good the result is.
-
-    Attributes
-    ----------
-    converged : bool
-        The run ended by itself, not by a budget.
-    stop_reason : str
-        ``finished``, ``max_vertices`` or ``max_seconds``.
-    n_points, n_cells : int
-        Size of the new mesh.
-    statistics : dict
-        ``edge_unit`` (fraction of edges within [1/sqrt 2, sqrt 2]), ``edge_min``, ``edge_mean``,
-        ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
-        ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
-    agreement : str
-        ``done``, ``off``, or ``skipped: `` and why.
-    consistency : dict
-        Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
-        ``inconsistency``, ``boundary``), ``rounds`` and ``stop_reason``.
-    simplex_ok, star_ok : float or None
-        Certified fractions of the cells and of the stars (see `certify`); None when the
-        agreement phase was off.
-    distortion : dict of str to float
-        Quantiles of ln gamma, the distortion of the metric along the edges.
-    tags : tuple of TagMeasure
-        Measure of every facet and region tag against the geometry.
-    counts : dict of str to float
-        Operations made.
-    seconds : dict of str to float
-        Wall time of each phase.
-    """
-
-    converged: bool
-    stop_reason: str
-    n_points: int
-    n_cells: int
-    statistics: dict[str, Any]
-    agreement: str
-    consistency: dict[str, Any]
-    simplex_ok: float | None
-    star_ok: float | None
-    distortion: dict[str, float]
-    tags: tuple[TagMeasure, ...]
-    counts: dict[str, float]
-    seconds: dict[str, float]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return the report as JSON builtins."""
-        out = asdict(self)
-        out["tags"] = [{**asdict(tag), "change": tag.change} for tag in self.tags]
-        return out
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -272,17 +159,57 @@ def remesh(
     .. [2] Bossen, Heckbert, A pliant method for anisotropic mesh generation, 1996.
     """
     options = RemeshOptions() if options is None else options
+    require(RemeshOptions, options=options)
     geometry = mesh if geometry is None else geometry
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
-    if mesh.dim != 2 or geometry.dim != 2:
+    if mesh.dim != 2:
         raise ValueError(f"remesh works on 2D meshes; this one has dimension {mesh.dim}")
+    if geometry.dim != 2:
+        raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh 2")
     _check_frozen(options.frozen_tags, geometry)
+    scale = _unit_scale(mesh.points)
+    raw = _call_core(mesh, metric, geometry, project, options, scale)
+    points = raw["points"] / scale
+    new = Mesh._trusted(
+        points=points,
+        cells=raw["cells"],
+        cell_tags=raw["cell_tags"],
+        facets=raw["facets"],
+        facet_tags=raw["facet_tags"],
+        corners=_same_points(geometry.points[geometry.corners], points),
+        names={**mesh.names, **geometry.names},
+    )
+    report = report_of(raw, geometry, new)
+    return Remeshed(new, raw["metric"] * scale**2, report)
+
+
+def _unit_scale(points: Float) -> float:
+    """Return the power of two that brings the extent of the points to about one.
+
+    The core then computes with the same numbers whatever the unit of length, as long as units
+    differ by powers of two.
+    """
+    extent = float(np.ptp(points, axis=0).max())
+    return float(np.ldexp(1.0, -int(np.frexp(extent)[1])))
+
+
+def _call_core(
+    mesh: Mesh,
+    metric: Float,
+    geometry: Mesh,
+    project: Project | None,
+    options: RemeshOptions,
+    scale: float,
+) -> dict[str, Any]:
+    """Remesh in scaled coordinates; points and metric come back scaled."""
+    parameters = asdict(options.consistency)
+    parameters["gamma_0"] = options.consistency.gamma_0 or np.inf
     try:
-        raw = _core.remesh2(
-            mesh.points,
+        return _core.remesh2(
+            mesh.points * scale,
             mesh.cells,
-            metric,
-            geometry.points,
+            metric / scale**2,
+            geometry.points * scale,
             geometry.cells,
             geometry.cell_tags,
             geometry.facets,
@@ -295,39 +222,14 @@ def remesh(
             np.inf if options.max_seconds is None else options.max_seconds,
             {True: "on", False: "off", "auto": "auto"}[options.agreement],
             {True: "on", False: "off", "pure": "pure"}[options.until_consistent],
-            {**asdict(options.consistency), "gamma_0": options.consistency.gamma_0 or np.inf},
+            parameters,
             options.seed,
             options.threads,
-            None if project is None else _pointwise(project),
+            None if project is None else _pointwise(project, scale),
             options.callback,
         )
     except _core.MeshingError as error:
         raise MeshingError(str(error)) from None
-    new = Mesh._trusted(
-        points=raw["points"],
-        cells=raw["cells"],
-        cell_tags=raw["cell_tags"],
-        facets=raw["facets"],
-        facet_tags=raw["facet_tags"],
-        corners=_same_points(geometry.points[geometry.corners], raw["points"]),
-        names={**mesh.names, **geometry.names},
-    )
-    report = RemeshReport(
-        converged=raw["stop_reason"] == "finished",
-        stop_reason=raw["stop_reason"],
-        n_points=new.n_points,
-        n_cells=new.n_cells,
-        statistics=raw["statistics"],
-        agreement=raw["agreement"],
-        consistency=raw["consistency"],
-        simplex_ok=raw["simplex_ok"],
-        star_ok=raw["star_ok"],
-        distortion=raw["distortion"],
-        tags=_tag_measures(geometry, new),
-        counts=raw["counts"],
-        seconds=raw["seconds"],
-    )
-    return Remeshed(new, raw["metric"], report)
 
 
 def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:
@@ -336,14 +238,16 @@ def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:
         raise ValueError(f"frozen_tags: no facet of the geometry has tag {unknown[0]}")
 
 
-def _pointwise(project: Project) -> Callable[[float, float, int], tuple[float, float]]:
-    """Call the user's vectorised projection for one point, and check what it returns."""
+def _pointwise(
+    project: Project, scale: float
+) -> Callable[[float, float, int], tuple[float, float]]:
+    """Call the user's vectorised projection for one scaled point, and check what it returns."""
 
     def at(x: float, y: float, tag: int) -> tuple[float, float]:
-        moved = np.asarray(project(np.array([[x, y]]), tag), dtype=np.float64)
+        moved = np.asarray(project(np.array([[x, y]]) / scale, tag), dtype=np.float64)
         if moved.shape != (1, 2) or not np.isfinite(moved).all():
             raise ValueError(f"project must return finite points of shape (1, 2), got {moved!r}")
-        return float(moved[0, 0]), float(moved[0, 1])
+        return float(moved[0, 0] * scale), float(moved[0, 1] * scale)
 
     return at
 
@@ -356,23 +260,3 @@ def _same_points(wanted: Float, points: Float) -> Int:
     keys = np.ascontiguousarray(points).view(row).ravel()
     found = np.flatnonzero(np.isin(keys, np.ascontiguousarray(wanted).view(row).ravel()))
     return found.astype(np.int32)
-
-
-def _tag_measures(geometry: Mesh, new: Mesh) -> tuple[TagMeasure, ...]:
-    """Compare what every tag carries; a tag that is gone is an error."""
-    found = []
-    for dim, kind in ((geometry.dim - 1, "facet"), (geometry.dim, "cell")):
-        before, after = (_measures(mesh, kind) for mesh in (geometry, new))
-        lost = sorted(set(before) - set(after))
-        if lost:
-            raise MeshingError(f"the new mesh lost {kind} tag {lost[0]}")
-        for tag, measure in before.items():
-            name = geometry.names.get((dim, tag), "")
-            found.append(TagMeasure(dim=dim, tag=tag, name=name, before=measure, after=after[tag]))
-    return tuple(found)
-
-
-def _measures(mesh: Mesh, kind: str) -> dict[int, float]:
-    if kind == "facet":
-        return measure_by_tag(facet_measures(mesh.points, mesh.facets), mesh.facet_tags)
-    return measure_by_tag(cell_volumes(mesh.points, mesh.cells), mesh.cell_tags)

@@ -56,13 +56,13 @@ def as_builtin(value: Any) -> Any:
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if dataclasses.is_dataclass(value):
-        return {item.name: as_builtin(getattr(value, item.name)) for item in fields_of(value)}
+        return attributes(value)
     raise TypeError(f"a report cannot hold a {type(value).__name__}")
 
 
-def fields_of(value: Any) -> tuple[dataclasses.Field[Any], ...]:
-    """Return the dataclass fields of an instance or a type."""
-    return dataclasses.fields(value)
+def attributes(value: Any) -> dict[str, Any]:
+    """Return the fields of a dataclass as JSON builtins, by their names."""
+    return {item.name: as_builtin(getattr(value, item.name)) for item in dataclasses.fields(value)}
 
 
 def to_json(report: Any) -> str:

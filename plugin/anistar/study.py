@@ -14,7 +14,7 @@ from .fields import as_fields
 from .interpolation_error import ExactFunction, l2_error
 from .loop import LoopOptions, Solve, Step, adapt_loop
 from .mesh import Mesh
-from .report import as_builtin, fields_of
+from .report import as_builtin, attributes
 
 ErrorFunction = Callable[[Mesh, dict[str, Any]], float]
 
@@ -43,7 +43,7 @@ class StudyRow:
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
-        return {item.name: as_builtin(getattr(self, item.name)) for item in fields_of(self)}
+        return attributes(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +135,12 @@ def convergence_study(
 
 
 def observed_order(points: Sequence[int], errors: Sequence[float], dim: int) -> float:
-    """Return the least-squares slope of ``-log(error)`` against ``log(points) / dim``."""
+    """Return the least-squares slope of ``-log(error)`` against ``log(points) / dim``.
+
+    NaN where there is none: fewer than two sizes, or an error of 0.
+    """
+    if len(set(points)) < 2 or min(errors) <= 0:
+        return math.nan
     sizes = np.log(np.asarray(points, dtype=np.float64)) / dim
     slope = np.polyfit(sizes, -np.log(np.asarray(errors, dtype=np.float64)), 1)[0]
     return float(slope)
@@ -145,8 +150,8 @@ def _study(steps: tuple[Step, ...], errors: list[float]) -> Study:
     counts, dim = [step.mesh.n_points for step in steps], steps[0].mesh.dim
     orders: list[float | None] = [None]
     for k in range(1, len(steps)):
-        ratio = math.log(counts[k] / counts[k - 1]) / dim
-        orders.append(-math.log(errors[k] / errors[k - 1]) / ratio if ratio else None)
+        order = observed_order(counts[k - 1 : k + 1], errors[k - 1 : k + 1], dim)
+        orders.append(None if math.isnan(order) else order)
     table = tuple(
         StudyRow(float(step.complexity or 0.0), count, step.mesh.n_cells, value, order)
         for step, count, value, order in zip(steps, counts, errors, orders, strict=True)

@@ -14,6 +14,7 @@ from . import _core
 from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import exp_metric, log_metric
+from .options import require
 from .report import as_builtin
 from .topology import cell_volumes
 
@@ -225,6 +226,7 @@ def _merged(
     options: TransferOptions | None, method: str | None, outside: Outside | None
 ) -> TransferOptions:
     given = options if options is not None else TransferOptions()
+    require(TransferOptions, options=given)
     return TransferOptions(
         method=given.method if method is None else method,
         outside=given.outside if outside is None else outside,

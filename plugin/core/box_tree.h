@@ -58,7 +58,8 @@ public:
 private:
   static constexpr std::size_t leaf_size = 4;
   std::vector<Index> items_;
-  std::vector<Index> position_; ///< of every item in items_; empty until one is extended
+  std::vector<Index>
+      position_; ///< of every item in items_; empty until one is extended
   std::vector<Box<d>> item_boxes_;
   std::vector<Box<d>> nodes_;
   std::size_t first_leaf_ = 0;

@@ -103,13 +103,15 @@ void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
     outers.push_back(outer_of(h));
   for (HalfFacet h : at_apex_)
     walls.push_back(outer_of(h));
-  for (std::size_t k = cells_.size(); k-- > 0;)
+  // the new cells take the places of the old ones: a swap touches nothing else
+  for (std::size_t k = cells_.size(); k-- > outers.size();)
     mesh_.free_cell(cells_[k]);
 
   star_.clear();
   ports_.clear();
-  for (const Outer &outer : outers) {
-    const Index c = mesh_.add_cell();
+  for (std::size_t k = 0; k < outers.size(); ++k) {
+    const Outer &outer = outers[k];
+    const Index c = k < cells_.size() ? cells_[k] : mesh_.add_cell();
     mesh_.at(c) = outer.cell;
     mesh_.at(c)[outer.facet] = apex;
     mesh_.region[static_cast<std::size_t>(c)] = outer.region;

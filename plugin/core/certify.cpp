@@ -3,6 +3,7 @@
 #include "locator.h"
 #include "parallel.h"
 
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -14,24 +15,6 @@ namespace {
 /// their first shell.
 constexpr double sharp_corner = std::numbers::pi / 6;
 constexpr int max_exempt = 8;
-
-/// The circumcentre of abc in M relative to a, and its radius.
-struct Circumcircle {
-  Vector<2> centre;
-  double radius;
-};
-
-Circumcircle circumcircle(const SymmetricTensor<2> &M, const Vector<2> &a,
-                          const Vector<2> &b, const Vector<2> &c) {
-  const Vector<2> u = b - a, v = c - a;
-  const double area = cross(u, v), det = determinant<2>(M);
-  const double uu = quadratic<2>(M, u), vv = quadratic<2>(M, v);
-  const double gx = (uu * v[1] - vv * u[1]) / (2 * area);
-  const double gy = (vv * u[0] - uu * v[0]) / (2 * area);
-  const Vector<2> r((M(1, 1) * gx - M(0, 1) * gy) / det,
-                    (M(0, 0) * gy - M(0, 1) * gx) / det);
-  return {a + r, std::sqrt(std::max(0., r[0] * gx + r[1] * gy))};
-}
 
 class Certifier {
 public:
@@ -61,6 +44,7 @@ private:
   int threads_;
   std::vector<Neighbours<2>> neighbours_;
   std::vector<std::array<Index, 3>> walls_;
+  std::map<Index, int> exempt_at_; ///< vertices exempt at each corner so far
 
   [[nodiscard]] const Vertex<2> &vertex(Index v) const {
     return vertices_[static_cast<std::size_t>(v)];
@@ -106,7 +90,7 @@ private:
 
   /// Walks around every corner of a wall; in sectors below the sharp angle the failing
   /// vertices of the first shell are exempt.
-  void find_exempt(CertificateResult &out) const {
+  void find_exempt(CertificateResult &out) {
     out.exempt.assign(vertices_.size(), 0);
     for (std::size_t c = 0; c < cells_.size(); ++c)
       for (std::size_t k = 0; k < 3; ++k)
@@ -114,7 +98,7 @@ private:
           exempt_sector(static_cast<Index>(c), k, out);
   }
 
-  void exempt_sector(Index first, std::size_t local, CertificateResult &out) const {
+  void exempt_sector(Index first, std::size_t local, CertificateResult &out) {
     const Index apex = cells_[static_cast<std::size_t>(first)][local];
     std::vector<Index> shell{apex};
     double angle = 0;
@@ -140,10 +124,13 @@ private:
       k = static_cast<std::size_t>(std::find(beyond.begin(), beyond.end(), apex) -
                                    beyond.begin());
     }
-    int n_exempt = 0;
+    int &n_exempt = exempt_at_[apex];
     for (Index v : shell)
-      if (out.star_ok[static_cast<std::size_t>(v)] == 0 && n_exempt++ < max_exempt)
+      if (out.star_ok[static_cast<std::size_t>(v)] == 0 &&
+          out.exempt[static_cast<std::size_t>(v)] == 0 && n_exempt < max_exempt) {
         out.exempt[static_cast<std::size_t>(v)] = 1;
+        ++n_exempt;
+      }
   }
 
   [[nodiscard]] std::size_t
@@ -188,11 +175,11 @@ private:
                           .centre,
                       static_cast<Index>(c)))
           counts = static_cast<std::uint8_t>(counts | 1u << k);
-      const bool ok = (out.delaunay[c] & counts) == counts;
+      const bool in_all = counts == all_vertices && out.delaunay[c] == all_vertices;
       out.restricted_v2 += counts != 0;
-      out.restricted_v2_ok += counts != 0 && ok;
+      out.restricted_v2_ok += in_all;
       out.restricted_v1 += counts == all_vertices;
-      out.restricted_v1_ok += counts == all_vertices && ok;
+      out.restricted_v1_ok += in_all;
     }
   }
 

@@ -16,9 +16,9 @@ struct CertificateResult {
   std::vector<std::uint8_t> exempt;
   /// Stars that pass also when the walk crosses interfaces (not the boundary).
   std::size_t stars_without_interfaces = 0;
-  /// The paper's restricted stars: cells whose circumcentre lies in the domain for the
-  /// metric of one vertex at least (v2, section 3) or of all of them (v1, section 3),
-  /// and how many of these are in the stars of all vertices for which they count.
+  /// Cells whose circumcentre lies in the domain for the metric of one vertex at least
+  /// (RR-7712 v2, section 3) or of all of them (v1, section 3), and how many of these
+  /// are in the restricted stars of all their vertices.
   std::size_t restricted_v2 = 0, restricted_v2_ok = 0;
   std::size_t restricted_v1 = 0, restricted_v1_ok = 0;
 };

@@ -12,9 +12,9 @@ namespace {
 constexpr int max_rounds = 80;
 /// Rounds without fewer failing cells after which the run has stalled.
 constexpr int patience = 12;
-/// Vertices are moved after every round when fewer than this fraction of cells fails,
-/// else now and then.
-constexpr double few_failing = .02;
+/// Vertices are moved after every round when few cells fail, now and then when more do,
+/// and never when nearly all do.
+constexpr double few_failing = .02, many_failing = .3;
 constexpr int rounds_between_moves = 4;
 /// New vertices keep this distance from the others in their own metric (packing).
 constexpr double separation = .4;
@@ -22,22 +22,6 @@ constexpr double separation = .4;
 constexpr double shortest_split = .8;
 
 enum class Rule { none, size, radius_edge, sliver, inconsistency };
-
-struct Ball {
-  Vector<2> centre;
-  double radius;
-};
-
-Ball circumball(const SymmetricTensor<2> &M, const Simplex<2> &s) {
-  const Vector<2> u = s[1] - s[0], v = s[2] - s[0];
-  const double area = cross(u, v), det = determinant<2>(M);
-  const double uu = quadratic<2>(M, u), vv = quadratic<2>(M, v);
-  const double gx = (uu * v[1] - vv * u[1]) / (2 * area);
-  const double gy = (vv * u[0] - uu * v[0]) / (2 * area);
-  const Vector<2> r((M(1, 1) * gx - M(0, 1) * gy) / det,
-                    (M(0, 0) * gy - M(0, 1) * gx) / det);
-  return {s[0] + r, std::sqrt(std::max(0., r[0] * gx + r[1] * gy))};
-}
 
 double shortest_edge(const SymmetricTensor<2> &M, const Simplex<2> &s) {
   return std::sqrt(std::min({quadratic<2>(M, s[1] - s[0]), quadratic<2>(M, s[2] - s[1]),
@@ -125,7 +109,7 @@ private:
       if (bits != 0 && (bits >> k & 1) == 0)
         continue; // not in this star, but in another one
       const Vertex<2> &v = mesh_.vertex(cell[k]);
-      const Ball ball = circumball(v.M, s);
+      const Circumcircle ball = circumcircle(v.M, s[0], s[1], s[2]);
       const double shortest = shortest_edge(v.M, s);
       const double volume = .5 * cross(s[1] - s[0], s[2] - s[0]) / v.weight;
       const double rho = ball.radius / shortest;
@@ -143,7 +127,7 @@ private:
 
   /// The sizing field: one, the unit of the metric, or the bounded distortion radius
   /// where that is smaller (Definition 2.2).
-  [[nodiscard]] double size_at(const Ball &ball, Index v) const {
+  [[nodiscard]] double size_at(const Circumcircle &ball, Index v) const {
     if (std::isinf(parameters_.gamma_0))
       return 1;
     Index cell = mesh_.background_cell[static_cast<std::size_t>(v)];
@@ -154,7 +138,8 @@ private:
 
   void insert_for(const BadCell &item, int round) {
     const SymmetricTensor<2> M = mesh_.vertex(item.star).M;
-    const Ball ball = circumball(M, mesh_.simplex(item.cell));
+    const Simplex<2> s = mesh_.simplex(item.cell);
+    const Circumcircle ball = circumcircle(M, s[0], s[1], s[2]);
     const EllipseSampler ellipse(M);
     CounterRandom random(seed_ + 2, static_cast<std::uint64_t>(item.cell),
                          static_cast<std::uint64_t>(round));
@@ -274,7 +259,7 @@ private:
     for (HalfFacet h : w_.cavity.facets()) {
       const auto [ia, ib] = mesh_.facet(h);
       const Vertex<2> &a = mesh_.vertex(ia), &b = mesh_.vertex(ib);
-      if (circumball(p.M, {p.x, a.x, b.x}).radius > radius)
+      if (circumcircle(p.M, p.x, a.x, b.x).radius > radius)
         continue;
       const HalfFacet beyond = mesh_.opposite(h);
       if (beyond.exists() && mesh_.constraint(h) == none)
@@ -350,17 +335,20 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
       counts.stop = "max_growth";
     else if (since_best > patience)
       counts.stop = "stalled";
-    else if (!monitor.keep_going(w.mesh.vertices.size(), 0))
+    else if (!monitor.keep_going(w.mesh.vertices.size(), 0) ||
+             !monitor.look(double(counts.rounds) / max_rounds))
       counts.stop = name_of(monitor.reason());
     if (!counts.stop.empty())
       break;
-    // rules 1 to 3 end by packing; only rule 4 and rounds without a point can stall
+    // in the pure mode rules 1 to 3 end by packing, and only rule 4 can stall
     const Rule rule = rounds.treat(bad, counts.rounds);
-    since_best += rule == Rule::inconsistency || rule == Rule::none;
+    since_best += relocate || rule == Rule::inconsistency || rule == Rule::none;
     // while failures are everywhere, moving vertices helps little for what it costs
+    const double failing = failing_fraction(check.bits);
     const bool moving =
-        relocate && (failing_fraction(check.bits) < few_failing ||
-                     counts.rounds % rounds_between_moves == rounds_between_moves - 1);
+        relocate && (failing < few_failing ||
+                     (failing < many_failing && counts.rounds % rounds_between_moves ==
+                                                    rounds_between_moves - 1));
     if (moving)
       (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds));
     renumber(w);

@@ -15,6 +15,10 @@ namespace {
 /// Chains that turn by less (radians) are straight: far above the noise of coordinates
 /// in a text file, far below the turn of any sampled curve.
 constexpr double straight_turn = 1e-6;
+/// A tangent that leaves its chord at a larger angle than this (its cosine) is no
+/// sample of a smooth curve: the segment stays straight, and the curve within a fifth
+/// of its length.
+const double steepest_tangent = std::cos(40 * std::numbers::pi / 180);
 /// Where an arc meets its tangent line, the polyline turns by half the turn between two
 /// chords of the arc; a turn well beyond that is a corner.
 constexpr double tangent_turn_factor = 1.5;
@@ -189,6 +193,10 @@ void Curve::fit(std::vector<Vector<2>> points, const Projection *projection) {
   start_.resize(n);
   end_.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
+    const Vector<2> direction = chord[k].normalized();
+    if (std::min(tangent[k].dot(direction), tangent[k + 1].dot(direction)) <
+        steepest_tangent)
+      is_straight_[k] = true;
     start_[k] = hermite(tangent[k], chord[k]);
     end_[k] = hermite(tangent[k + 1], chord[k]);
   }

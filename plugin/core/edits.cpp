@@ -141,9 +141,9 @@ Index split_edge(Workspace &w, HalfFacet edge) {
   if (other.exists())
     w.cavity.add(other.cell());
   const Index record = mesh.constraint(edge);
-  if (is_constrained && !w.walls.is_clear(w.curve(whole), mesh.vertex(whole.v0).x,
-                                          whole.v0, mesh.vertex(whole.v1).x, whole.v1,
-                                          x, {&record, 1}))
+  if (is_constrained &&
+      !w.walls.is_clear(w.curve(whole), mesh.vertex(whole.v0).x, whole.v0,
+                        mesh.vertex(whole.v1).x, whole.v1, x, {&record, 1}))
     return none;
   if (!grow_to_see(mesh, w.cavity, none, skipped, x))
     return none;

@@ -16,7 +16,9 @@ bool bound_swap(const Triangulation<2> &mesh, HalfFacet edge, Cavity<2> &cavity)
 
 bool Legaliser::wants_flip(HalfFacet edge) const {
   const HalfFacet other = mesh_.opposite(edge);
-  if (!other.exists() || mesh_.constraint(edge) != none)
+  if (!other.exists() || mesh_.constraint(edge) != none ||
+      !range_.contains(mesh_.at(edge.cell())) ||
+      !range_.contains(mesh_.at(other.cell())))
     return false;
   const auto [ia, ib] = mesh_.facet(edge);
   const Vertex<2> &a = mesh_.vertex(ia), &b = mesh_.vertex(ib);

@@ -5,6 +5,16 @@
 
 namespace anistar {
 
+/// Vertices first <= v < last: a block of the mesh that one thread may change.
+struct VertexRange {
+  Index first = 0, last = std::numeric_limits<Index>::max();
+
+  [[nodiscard]] bool contains(const Cell<2> &cell) const {
+    return std::all_of(cell.begin(), cell.end(),
+                       [&](Index v) { return first <= v && v < last; });
+  }
+};
+
 /// Restores the blended Delaunay property around changed cells. An edge is flipped when
 /// the opposite vertex lies inside the circumscribed ellipse for the mean of the four
 /// metrics, each scaled to determinant one.
@@ -15,6 +25,9 @@ class Legaliser {
 public:
   explicit Legaliser(Triangulation<2> &mesh) : mesh_(mesh), cavity_(mesh) {}
 
+  /// From now on flips only edges whose two cells have all their vertices in the range.
+  void restrict_to(const VertexRange &range) { range_ = range; }
+
   void push(HalfFacet edge) { stack_.push_back(edge); }
   /// All edges of the star of v and of its link.
   void push_star(Index v);
@@ -23,11 +36,17 @@ public:
   /// are appended to `changed` when given.
   void run(int cap, std::vector<Index> *changed = nullptr);
 
+  /// Takes over what another one has counted.
+  void add_counts(const Legaliser &other) {
+    n_flips_ += other.n_flips_;
+    n_capped_ += other.n_capped_;
+  }
   [[nodiscard]] std::size_t n_flips() const { return n_flips_; }
   [[nodiscard]] std::size_t n_capped() const { return n_capped_; }
 
 private:
   Triangulation<2> &mesh_;
+  VertexRange range_;
   Cavity<2> cavity_;
   std::vector<HalfFacet> stack_, star_;
   std::size_t n_flips_ = 0, n_capped_ = 0;

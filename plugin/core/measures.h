@@ -57,4 +57,26 @@ template <std::size_t d>
   return 2 * std::numbers::sqrt3 * cross(u, v) / (dense.weight * squares);
 }
 
+/// The circumscribed ellipse of a triangle in a metric.
+struct Circumcircle {
+  Vector<2> centre;
+  double radius;
+  Vector<2> offset; ///< of the centre from the first vertex, with its own accuracy
+};
+
+/// @pre a, b, c turn left.
+[[nodiscard]] inline Circumcircle circumcircle(const SymmetricTensor<2> &M,
+                                               const Vector<2> &a, const Vector<2> &b,
+                                               const Vector<2> &c) {
+  const Vector<2> u = b - a, v = c - a;
+  const double area = cross(u, v), det = determinant<2>(M);
+  const double uu = quadratic<2>(M, u), vv = quadratic<2>(M, v);
+  // M offset = g with 2 g.u = uu and 2 g.v = vv
+  const double gx = (uu * v[1] - vv * u[1]) / (2 * area);
+  const double gy = (vv * u[0] - uu * v[0]) / (2 * area);
+  const Vector<2> offset((M(1, 1) * gx - M(0, 1) * gy) / det,
+                         (M(0, 0) * gy - M(0, 1) * gx) / det);
+  return {a + offset, std::sqrt(std::max(0., offset[0] * gx + offset[1] * gy)), offset};
+}
+
 } // namespace anistar

@@ -49,11 +49,13 @@ public:
   [[nodiscard]] bool keep_going(std::size_t n_vertices, double fraction) {
     if (n_vertices >= max_vertices_)
       reason_ = StopReason::max_vertices;
-    if (++calls_ % 4096 == 0) {
-      tell(fraction);
-      if (elapsed() > max_seconds_)
-        reason_ = StopReason::max_seconds;
-    }
+    return ++calls_ % 4096 == 0 ? look(fraction) : reason_ == StopReason::finished;
+  }
+  /// The same, looking at the clock and at the user every time: for what takes a while.
+  [[nodiscard]] bool look(double fraction) {
+    tell(fraction);
+    if (reason_ == StopReason::finished && elapsed() > max_seconds_)
+      reason_ = StopReason::max_seconds;
     return reason_ == StopReason::finished;
   }
   [[nodiscard]] StopReason reason() const { return reason_; }

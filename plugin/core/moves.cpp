@@ -23,15 +23,9 @@ struct Weighted {
 void add_circumcentre(const Vertex<2> &v, const Vertex<2> &a, const Vertex<2> &b,
                       Weighted &mean) {
   const SymmetricTensor<2> M = v.weight * v.M + a.weight * a.M + b.weight * b.M;
-  const Vector<2> p = a.x - v.x, q = b.x - v.x;
-  const double area = cross(p, q), det = determinant<2>(M);
-  const double pp = quadratic<2>(M, p), qq = quadratic<2>(M, q);
-  const double gx = (pp * q[1] - qq * p[1]) / (2 * area);
-  const double gy = (qq * p[0] - pp * q[0]) / (2 * area);
-  const Vector<2> centre((M(1, 1) * gx - M(0, 1) * gy) / det,
-                         (M(0, 0) * gy - M(0, 1) * gx) / det);
+  const double area = cross(a.x - v.x, b.x - v.x);
   const double weight = area / std::cbrt(v.weight * a.weight * b.weight);
-  mean.sum += weight * centre;
+  mean.sum += weight * circumcircle(M, v.x, a.x, b.x).offset;
   mean.weight += weight;
 }
 

@@ -13,6 +13,8 @@ namespace {
 /// of mean_length: short against the unit edge.
 constexpr double sample_length = .25;
 constexpr int max_sample_depth = 24;
+/// More edges than this on one curve are an absurd request.
+constexpr double most_edges = 1e9;
 /// Parameters this near to a point of the geometry are there: a retreat, which may put
 /// a vertex on that point, would leave an edge without length.
 constexpr double at_point = 1e-7;
@@ -191,16 +193,19 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
     outline.free_points.push_back({fixed(point), region});
   for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
     const Curve &curve = geometry.curves[c];
-    const LengthTable table = Sampler{curve, background, 1e9}.run();
-    if (!(table.total() < 1e9) ||
+    const LengthTable table = Sampler{curve, background, most_edges}.run();
+    if (!(table.total() < most_edges) ||
         !monitor.has_room(outline.vertices.size() +
                           static_cast<std::size_t>(table.total())))
       throw MeshingError(
-          "the metric asks for " + std::to_string(table.total()) +
-          " edges on the curve with tag " + std::to_string(curve.tag) +
-          " that begins near " + place(curve.at(0)) + ", beside " +
-          std::to_string(outline.vertices.size()) +
-          " vertices before it: more than max_vertices allows");
+          "the metric asks for " +
+          (table.total() < most_edges
+               ? std::to_string(static_cast<long>(std::ceil(table.total())))
+               : "more than a billion") +
+          " edges on a curve with tag " + std::to_string(curve.tag) +
+          ", more than there may be vertices: it begins near " + place(curve.at(0)) +
+          ", " + std::to_string(outline.vertices.size()) +
+          " vertices come before it");
     const std::vector<double> t = cut(curve, table, hausdorff);
     // the seam of a loop stays: a parameter must begin somewhere
     Index previous = fixed(curve.vertices.front());

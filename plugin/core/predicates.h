@@ -92,8 +92,8 @@ template <std::size_t d> [[nodiscard]] Orientation orientation(const Simplex<d> 
 }
 
 /// Whether the volume of a simplex is positive and above the round-off of its edges,
-/// whatever the order of its vertices: a cell of less, positive as it may be exactly, is
-/// flat to everyone who computes with doubles.
+/// whatever the order of its vertices: a cell of less, positive as it may be exactly,
+/// is flat to everyone who computes with doubles.
 template <std::size_t d> [[nodiscard]] inline bool has_volume(const Simplex<d> &s) {
   double longest = 0; // squared
   for (std::size_t i = 0; i < d; ++i)

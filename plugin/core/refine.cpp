@@ -1,7 +1,6 @@
 #include "refine.h"
 
 #include <cmath>
-#include <optional>
 
 namespace anistar {
 namespace {
@@ -22,30 +21,12 @@ constexpr int flip_cap = 200;
 /// Radii are sorted into buckets, four to a factor of two.
 constexpr std::size_t n_buckets = 64;
 
-struct Circle {
-  Vector<2> centre;
-  double radius;
-};
-
-/// Circumcircle in the mean of the three metrics, whose density is their geometric
-/// mean.
-std::optional<Circle> circumcircle(const Vertex<2> &a, const Vertex<2> &b,
-                                   const Vertex<2> &c) {
+/// The mean of three metrics, whose density is their geometric mean.
+SymmetricTensor<2> mean_metric(const Vertex<2> &a, const Vertex<2> &b,
+                               const Vertex<2> &c) {
   SymmetricTensor<2> M = a.weight * a.M + b.weight * b.M + c.weight * c.M;
   const double density = 1 / std::cbrt(a.weight * b.weight * c.weight);
-  M *= density / std::sqrt(determinant<2>(M));
-  const Vector<2> u = b.x - a.x, v = c.x - a.x;
-  const double area = cross(u, v);
-  if (!(area > 0))
-    return std::nullopt;
-  const double uu = quadratic<2>(M, u), vv = quadratic<2>(M, v);
-  // M (centre - a) = g with 2 g.u = uu and 2 g.v = vv
-  const double gx = (uu * v[1] - vv * u[1]) / (2 * area);
-  const double gy = (vv * u[0] - uu * v[0]) / (2 * area);
-  const double det = determinant<2>(M);
-  const Vector<2> r((M(1, 1) * gx - M(0, 1) * gy) / det,
-                    (M(0, 0) * gy - M(0, 1) * gx) / det);
-  return Circle{a.x + r, std::sqrt(std::max(0., r[0] * gx + r[1] * gy))};
+  return M *= density / std::sqrt(determinant<2>(M));
 }
 
 class Refinement {
@@ -77,19 +58,20 @@ private:
   std::size_t top_ = 0; ///< no bucket above this one has entries
   std::vector<Index> changed_;
 
-  [[nodiscard]] std::optional<Circle> circle_of(Index cell) const {
+  [[nodiscard]] Circumcircle circle_of(Index cell) const {
     const Cell<2> &v = w_.mesh.at(cell);
-    return circumcircle(w_.mesh.vertex(v[0]), w_.mesh.vertex(v[1]),
-                        w_.mesh.vertex(v[2]));
+    const Vertex<2> &a = w_.mesh.vertex(v[0]), &b = w_.mesh.vertex(v[1]),
+                    &c = w_.mesh.vertex(v[2]);
+    return circumcircle(mean_metric(a, b, c), a.x, b.x, c.x);
   }
 
   void push(Index cell) {
     if (!w_.mesh.is_alive(cell))
       return;
-    const std::optional<Circle> circle = circle_of(cell);
-    if (!circle || !(circle->radius > largest_radius))
+    const double radius = circle_of(cell).radius;
+    if (!(radius > largest_radius)) // also when round-off has made it NaN
       return;
-    const double level = 4 * std::log2(circle->radius / largest_radius);
+    const double level = 4 * std::log2(radius / largest_radius);
     const std::size_t b = std::min(n_buckets - 1, static_cast<std::size_t>(level));
     buckets_[b].push_back({cell, w_.mesh.at(cell)});
     top_ = std::max(top_, b);
@@ -134,16 +116,16 @@ private:
 
   void treat(Index cell) {
     const Cell<2> before = w_.mesh.at(cell);
-    const std::optional<Circle> circle = circle_of(cell);
-    if (!circle)
+    const Circumcircle circle = circle_of(cell);
+    if (!circle.centre.allFinite())
       return;
-    const Walk at = walk_to(w_.mesh, cell, circle->centre);
+    const Walk at = walk_to(w_.mesh, cell, circle.centre);
     Offer answer = Offer::walled;
     if (at.cell != none)
-      answer = offer(circle->centre, at.cell);
+      answer = offer(circle.centre, at.cell);
     else if (at.wall.exists() && split(at.wall))
       answer = Offer::split;
-    else if (circle->radius < hidden_radius)
+    else if (circle.radius < hidden_radius)
       answer = Offer::refused;
     if (answer == Offer::walled) {
       const Simplex<2> s = w_.mesh.simplex(cell);

@@ -26,6 +26,26 @@ constexpr double repair_floor = .5;
 /// of the unit edges, and on none above it.
 constexpr double largest_agreeing_distortion = .6;
 
+/// A geometry that reaches further beyond the mesh that carries the metric than this
+/// fraction of its extent is another domain.
+constexpr double largest_gap = .1;
+
+void check_gap(const Background<2> &background, const Outline &outline) {
+  Box<2> box;
+  for (const Vector<2> &x : background.locator().points())
+    box.extend(x);
+  const double extent = (box.high - box.low).maxCoeff();
+  for (std::size_t v = 0; v < outline.vertices.size(); ++v) {
+    const Vector<2> &x = outline.vertices[v].x;
+    const double gap = background.distance(x, outline.background[v]);
+    if (gap > largest_gap * extent)
+      throw std::invalid_argument(
+          "the geometry reaches beyond the mesh that carries the metric by " +
+          std::to_string(gap / extent) + " of its extent, more than " +
+          std::to_string(largest_gap));
+  }
+}
+
 class Stopwatch {
 public:
   Stopwatch(Monitor &monitor, std::map<std::string, double> &seconds)
@@ -49,7 +69,7 @@ private:
   double last_ = 0;
 };
 
-void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor,
+void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
            std::map<std::string, double> &counts) {
   const auto control = [&](double shortest, double longest) {
     const LengthCounts done = control_lengths(w, legaliser, monitor, shortest, longest);
@@ -58,9 +78,9 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor,
   };
   for (const Round &round : schedule) {
     for (int k = 0; k < round.pliant_sweeps; ++k)
-      smooth(w, legaliser, monitor, Target::unit_edges);
+      smooth(w, legaliser, monitor, Target::unit_edges, threads);
     for (int k = 0; k < round.odt_sweeps; ++k)
-      smooth(w, legaliser, monitor, Target::odt);
+      smooth(w, legaliser, monitor, Target::odt, threads);
     if (round.longest > 0)
       control(round.shortest, round.longest);
   }
@@ -113,11 +133,9 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
   out.star_ok = stars.star_ok;
 }
 
-void extract(const Workspace &w, RemeshResult &out) {
-  const Triangulation<2> &mesh = w.mesh;
-  out.vertices = mesh.vertices;
-  out.cells = mesh.cells;
-  out.cell_tags = mesh.region;
+/// Hands the arrays of the mesh over; the workspace is spent.
+void extract(Workspace &w, RemeshResult &out) {
+  Triangulation<2> &mesh = w.mesh;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (std::size_t i = 0; i < 3; ++i) {
       const HalfFacet h(static_cast<Index>(c), i), other = mesh.opposite(h);
@@ -126,6 +144,9 @@ void extract(const Workspace &w, RemeshResult &out) {
       out.facets.push_back(mesh.facet(h));
       out.facet_tags.push_back(w.curve(w.curve_edge(h)).tag);
     }
+  out.vertices = std::move(mesh.vertices);
+  out.cells = std::move(mesh.cells);
+  out.cell_tags = std::move(mesh.region);
 }
 
 } // namespace
@@ -142,6 +163,8 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   Outline outline =
       make_outline(geometry, background, settings.hausdorff_number, monitor);
 
+  check_gap(background, outline);
+
   watch.phase("size");
   MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));
   Workspace w{on_curves, geometry, background, settings.hausdorff_number};
@@ -151,7 +174,7 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   watch.phase("shape");
   renumber(w);
   if (settings.consistency != ConsistencyMode::pure)
-    shape(w, legaliser, monitor, out.counts);
+    shape(w, legaliser, monitor, settings.threads, out.counts);
   renumber(w);
 
   certify_stars(w, legaliser, monitor, settings, watch, out);

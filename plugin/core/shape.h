@@ -13,10 +13,14 @@ enum class Target {
   odt         ///< optimal Delaunay triangulation: the mean of the circumcentres
 };
 
-/// One sweep over all vertices in order: each moves towards its target as far as its
-/// star stays valid, takes the metric of its new place, and its edges are legalised.
-/// Vertices on a curve slide along it.
-void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target);
+/// One sweep over all vertices: each moves towards its target as far as its star stays
+/// valid, takes the metric of its new place, and its edges are legalised. Vertices on a
+/// curve slide along it.
+///
+/// Blocks of the Hilbert order are swept side by side, then the vertices between blocks
+/// in order; the blocks do not depend on the number of threads, nor does the result.
+void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
+            int threads);
 
 struct LengthCounts {
   std::size_t splits = 0, collapses = 0;

@@ -1,7 +1,9 @@
 #include "moves.h"
+#include "parallel.h"
 #include "shape.h"
 
 #include <cmath>
+#include <mutex>
 
 namespace anistar {
 namespace {
@@ -10,18 +12,24 @@ namespace {
 constexpr double longest_move = .3;
 constexpr int max_halvings = 4;
 constexpr int flip_cap = 40;
+/// Vertices of a block: few enough for many threads, enough that few lie in between.
+constexpr std::size_t block_size = 8192;
 
 class Smoother {
 public:
   Smoother(Workspace &w, Legaliser &legaliser, Target target)
       : w_(w), legaliser_(legaliser), target_(target) {}
 
-  void visit(Index v) {
+  /// @returns false, without a change, when the star of v leaves the range.
+  bool visit(Index v, const VertexRange &range) {
     Triangulation<2> &mesh = w_.mesh;
     const Index feature = mesh.feature[static_cast<std::size_t>(v)];
     if (feature == Triangulation<2>::corner)
-      return;
+      return true;
     star_of(mesh, v, star_);
+    for (HalfFacet h : star_)
+      if (!range.contains(mesh.at(h.cell())))
+        return false;
     const Vertex<2> &vertex = mesh.vertex(v);
     Vector<2> step = Vector<2>::Zero();
     if (feature != 1)
@@ -34,6 +42,7 @@ public:
       legaliser_.push_star(v);
       legaliser_.run(flip_cap);
     }
+    return true;
   }
 
 private:
@@ -82,12 +91,33 @@ private:
 
 } // namespace
 
-void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target) {
+void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
+            int threads) {
+  const std::size_t n = w.mesh.vertices.size();
+  const std::size_t n_blocks = std::max<std::size_t>(1, n / block_size);
+  if (!monitor.look(0))
+    return;
+  std::vector<std::vector<Index>> between(n_blocks);
+  std::mutex counting;
+  parallel_ranges(n_blocks, threads, [&](std::size_t begin, std::size_t end) {
+    Legaliser own(w.mesh);
+    Smoother smoother(w, own, target);
+    for (std::size_t block = begin; block < end; ++block) {
+      const VertexRange range{static_cast<Index>(n * block / n_blocks),
+                              static_cast<Index>(n * (block + 1) / n_blocks)};
+      own.restrict_to(range);
+      for (Index v = range.first; v < range.last; ++v)
+        if (w.mesh.is_used(v) && !smoother.visit(v, range))
+          between[block].push_back(v);
+    }
+    const std::lock_guard lock(counting);
+    legaliser.add_counts(own);
+  });
   Smoother smoother(w, legaliser, target);
-  const auto n = static_cast<Index>(w.mesh.vertices.size());
-  for (Index v = 0; v < n && monitor.keep_going(0, double(v) / n); ++v)
-    if (w.mesh.is_used(v))
-      smoother.visit(v);
+  for (const std::vector<Index> &vertices : between)
+    for (Index v : vertices)
+      if (w.mesh.is_used(v))
+        (void)smoother.visit(v, {});
 }
 
 } // namespace anistar

@@ -146,7 +146,8 @@ StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed, int th
       check.failures = failing.size();
     const bool hopeless =
         static_cast<double>(failing.size()) > few * static_cast<double>(mesh.n_cells());
-    if (failing.empty() || !mend || hopeless || round == max_rounds)
+    if (failing.empty() || !mend || hopeless || round == max_rounds ||
+        !monitor.look(double(round) / max_rounds))
       break;
     std::size_t moves = 0;
     for (Index c : failing)

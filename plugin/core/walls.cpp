@@ -9,9 +9,8 @@ namespace {
 
 bool all_beyond(const Vector<2> &a, const Vector<2> &b,
                 std::span<const Vector<2> *const> points, Orientation side) {
-  return std::all_of(points.begin(), points.end(), [&](const Vector<2> *p) {
-    return orientation(a, b, *p) == side;
-  });
+  return std::all_of(points.begin(), points.end(),
+                     [&](const Vector<2> *p) { return orientation(a, b, *p) == side; });
 }
 
 /// Whether the closed segment pq meets the closed, positive triangle: no side of either

@@ -24,8 +24,8 @@ public:
   Walls(const Triangulation<2> &mesh, const std::vector<CurveEdge> &edges,
         const Geometry &geometry);
 
-  /// Whether the boundary edge from a to b may go around by x: the triangle a, b, x lies
-  /// on the inner side of the curve, or no other boundary edge meets it.
+  /// Whether the boundary edge from a to b may go around by x: the triangle a, b, x
+  /// lies on the inner side of the curve, or no other boundary edge meets it.
   /// @param a_index, b_index vertices at a and b, `none` for a place without a vertex
   /// @param replaced entries of the table that the change does away with
   [[nodiscard]] bool is_clear(const Curve &curve, const Vector<2> &a, Index a_index,

@@ -132,6 +132,20 @@ class TestBadInput:
             AdaptOptions(metric_fields=[])
 
 
+class TestOptionsOfAnotherClass:
+    def test_a_dict_is_refused_with_a_hint(self):
+        mesh = square(2)
+        with pytest.raises(
+            TypeError, match=r"options must be AdaptOptions, not dict: AdaptOptions\."
+        ):
+            adapt(mesh, {"u": mesh.points[:, 0]}, {"target_complexity": 9})
+
+    @pytest.mark.parametrize("stage", ["metric", "remesh", "transfer"])
+    def test_a_stage_with_other_options_is_named(self, stage):
+        with pytest.raises(TypeError, match=f"{stage} must be .*, not str"):
+            AdaptOptions(**{stage: "l2"})
+
+
 class TestOptionsFromPlainNames:
     def test_petsc_names_nested_and_flat(self):
         nested = AdaptOptions.from_dict({"dm_plex_metric": {"h_min": 1e-3, "a_max": 0}})
@@ -151,6 +165,15 @@ class TestOptionsFromPlainNames:
         assert made.remesh == RemeshOptions(max_vertices=50)
         assert made.transfer == TransferOptions(outside="nan")
 
+    def test_the_method_is_that_of_the_metric_unless_it_is_nested(self):
+        plain = AdaptOptions.from_dict({"method": "quadratic"})
+        nested = AdaptOptions.from_dict(
+            {"metric": {"method": "l2"}, "transfer": {"method": "interpolate"}}
+        )
+        assert plain.metric == MetricOptions(method="quadratic")
+        assert nested.metric == MetricOptions(method="l2")
+        assert plain.transfer == nested.transfer == TransferOptions(outside="nearest")
+
     def test_none_given_is_the_default(self):
         assert AdaptOptions.from_dict({}) == AdaptOptions()
 
@@ -161,6 +184,8 @@ class TestOptionsFromPlainNames:
             ({"zzz": 1.0}, "unknown option 'zzz': options: a_max,"),
             ({"hmin": 1.0, "h_min": 2.0}, "option 'h_min' is given twice"),
             ({"h_min": -1.0}, "h_min"),
+            ({"method": "magic"}, "recovery method must be one of auto, quadratic, l2"),
+            ({"transfer": {"h_min": 1.0}}, "unknown option 'h_min'"),
         ],
     )
     def test_a_bad_option_is_named(self, given, message):

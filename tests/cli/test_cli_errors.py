@@ -1,10 +1,14 @@
 import json
+import os
+import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from meshes import square
 
+import anistar
 from anistar.cli import main
 from anistar.formats import read, write, write_metric
 
@@ -49,6 +53,18 @@ CASES = {
     "unknown option": ("adapt in.vtu -o o.vtu --colour red", "unrecognized arguments: --colour"),
     "not a number": ("adapt in.vtu -o o.vtu --h-min tiny", "argument --h-min"),
     "not off": ("adapt in.vtu -o o.vtu --a-max some", "argument --a-max: invalid number or 'off'"),
+    "not a list": (
+        "adapt in.vtu -o o.vtu --frozen-tags 1,x",
+        "argument --frozen-tags: '1,x' is no list of integers like 1,2,3",
+    ),
+    "metric over the fields": (
+        "adapt in.vtu --target-complexity 9 -o o.mesh --metric-output o.sol",
+        "the metric cannot go to o.sol: the mesh or its fields are written there",
+    ),
+    "unknown recovery": (
+        "adapt in.vtu -o o.vtu --target-complexity 9 --method magic",
+        "recovery method must be one of auto, quadratic, l2, got 'magic'",
+    ),
     "out of bounds": ("adapt in.vtu -o o.vtu --target-complexity -3", "target_complexity"),
     "no target": ("adapt in.vtu -o o.vtu", "target_complexity or target_elements"),
     "no such file": ("adapt gone.vtu -o o.vtu --target-complexity 9", "gone.vtu: no such file"),
@@ -73,6 +89,14 @@ CASES = {
     "no metric": ("remesh in.vtu -o o.vtu", "give --metric, there is no .sol beside in.vtu"),
     "output in no folder": ("convert in.vtu no/o.vtu", "cannot write no/o.vtu: no such folder no"),
     "output is a folder": ("convert in.vtu folder.vtu", "cannot write folder.vtu: it is a folder"),
+    "output in no known format": (
+        "adapt in.vtu --target-complexity 9 -o o.nowhere",
+        "cannot write o.nowhere: no format has the suffix '.nowhere'",
+    ),
+    "output that holds no mesh": (
+        "adapt in.vtu --target-complexity 9 -o o.sol",
+        "cannot write o.sol: a solution file holds no mesh",
+    ),
     "output without suffix": ("convert in.vtu o", "cannot write o: the suffix"),
     "unknown method": (
         "transfer in.vtu bare.vtu --method magic -o o.vtu",
@@ -168,3 +192,68 @@ def test_a_crash_while_writing_leaves_the_old_file(folder, monkeypatch):
     assert not list(folder.glob("*.part*"))
     assert not list(folder.glob(".*part*"))
     assert read(folder / "in.vtu")[0].n_points == 25
+
+
+def test_what_an_interrupted_loop_finished_is_kept(folder, capsys, monkeypatch):
+    def interrupted(*arguments, **more):
+        raise KeyboardInterrupt
+
+    (folder / "solver.py").write_text(SECOND_CALL_FAILS)
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    monkeypatch.setattr("anistar.loop.adapt", interrupted)
+    assert run("loop in.vtu --complexities 50 -o run", "--command", command) == 1
+    assert capsys.readouterr().err == "anistar loop: interrupted\n"
+    report = json.loads((folder / "run" / "report.json").read_text())
+    assert report["stop_reason"] == "interrupted"
+    assert [step["points"] for step in report["steps"]] == [25]
+
+
+def test_a_solution_of_another_mesh_is_said(folder, capsys):
+    script = SECOND_CALL_FAILS.replace("range(25)", "range(24)").replace(
+        "Vertices 25", "Vertices 24"
+    )
+    (folder / "solver.py").write_text(script)
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    assert run("loop in.vtu --complexities 50 -o run", "--command", command) == 2
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert "no fields in run/step_000.sol: step_000.sol is not used: it has another number" in said
+
+
+def test_a_failed_solution_leaves_the_old_mesh_beside_the_old_solution(folder, monkeypatch):
+    mesh = square(2)
+    write("pair.mesh", mesh, {"u": mesh.points[:, 0]})
+    before = {path: (folder / path).read_bytes() for path in ("pair.mesh", "pair.sol")}
+
+    def full(*arguments):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("anistar.formats.medit.write_solution", full)
+    assert run("convert in.vtu pair.mesh") == 2
+    assert {path: (folder / path).read_bytes() for path in before} == before
+
+
+def test_a_reader_that_has_seen_enough_is_no_error(folder):
+    words = [sys.executable, "-m", "anistar.cli", "check", "in.vtu"]
+    path = str(Path(anistar.__file__).parents[1])
+    closed = subprocess.Popen(
+        words,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": path},
+    )
+    closed.stdout.close()
+    said = closed.stderr.read()
+    closed.stderr.close()
+    assert closed.wait() == 1
+    assert said == b""
+
+
+def test_a_solution_of_an_earlier_run_is_not_taken_for_a_new_one(folder, capsys):
+    (folder / "solver.py").write_text(SECOND_CALL_FAILS)
+    command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    words = "loop in.vtu --complexities 50 -o run"
+    run(words, "--command", command)
+    assert (folder / "run" / "step_000.sol").is_file()
+    (folder / "solver.py").write_text("")
+    assert run(words, "--command", command) == 1
+    assert "the solver wrote no run/step_000.sol" in capsys.readouterr().err

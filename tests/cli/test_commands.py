@@ -193,3 +193,44 @@ def test_every_help_shows_an_example_and_the_exit_codes(module, capsys):
     assert f"anistar {name}" in said.partition("example:")[2]
     assert "exit codes: 0 done, 1 failed" in said
     assert "--json" in said
+
+
+def test_a_mesh_that_a_budget_cut_short_is_told(folder, capsys):
+    assert run("adapt in.vtu --field u --target-complexity 300 --max-vertices 60 -o out.vtu") == 0
+    assert "not converged: the mesher stopped at max_vertices" in capsys.readouterr().out
+    mesh, _ = read("out.vtu")
+    assert validate(mesh, read("in.vtu")[0]) == []
+
+
+def test_check_tells_what_reading_had_to_change(folder, capsys):
+    text = Path("in.mesh").read_text()
+    head, cells = text.split("Triangles\n")
+    count, first, rest = cells.split("\n", 2)
+    a, b, c, tag = first.split()
+    Path("turned.mesh").write_text(f"{head}Triangles\n{count}\n{b} {a} {c} {tag}\n{rest}")
+    assert run("check turned.mesh --json") == 0
+    report = report_of(capsys)
+    assert report["read"]["flipped_cells"] == 1
+    assert report["unit_edges"] is None
+
+
+def test_transfer_shows_the_integral_of_each_component(folder, capsys):
+    mesh = square(10)
+    write("v.vtu", mesh, {"v": mesh.points * [1.0, 3.0]})
+    assert run("transfer v.vtu in.vtu -o out.vtu") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split() for line in lines if "v[" in line] == [
+        ["v[0]", "0.5", "0.5"],
+        ["v[1]", "1.5", "1.5"],
+    ]
+
+
+def test_remesh_carries_the_fields_that_are_not_its_metric(folder, capsys):
+    mesh, _ = read("in.mesh")
+    write_metric("sizes.sol", mesh, np.tile(400.0 * np.eye(2), (mesh.n_points, 1, 1)))
+    assert run("remesh in.mesh --metric sizes.sol -o with.mesh") == 0
+    assert list(read("with.mesh")[1]) == ["u"]
+    write_metric("in.sol", mesh, np.tile(400.0 * np.eye(2), (mesh.n_points, 1, 1)))
+    assert run("remesh in.mesh --metric in.sol -o bare.mesh") == 0
+    assert list(read("bare.mesh")[1]) == ["metric"]
+    assert validate(read("bare.mesh")[0], mesh) == []

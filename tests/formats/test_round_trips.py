@@ -3,6 +3,7 @@ import pytest
 from meshes import annulus, rectangle_with_jitter, slit, square, two_region_cube, two_regions
 
 from anistar import formats
+from anistar.errors import FormatError
 from anistar.fields import Field, as_fields
 from anistar.mesh import Mesh
 from anistar.validation import validate
@@ -187,3 +188,54 @@ def test_negative_and_large_tags_come_back(tmp_path):
     for suffix in ALL:
         formats.write(tmp_path / f"m{suffix}", mesh)
         assert_same_arrays(formats.read(tmp_path / f"m{suffix}")[0], mesh)
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".vtk", ".xdmf", ".msh", ".mesh"])
+@pytest.mark.parametrize("name", ["refs", "cell_tags", "größe", "a<b>&'"])
+def test_a_field_may_be_called_what_other_programs_call_tags(tmp_path, suffix, name):
+    mesh = square(2)
+    path = tmp_path / f"m{suffix}"
+    values = np.arange(mesh.n_cells) + 0.5
+    formats.write(path, mesh, {name: Field(values, "cells")})
+    again, fields = formats.read(path)
+    assert np.array_equal(fields[name].values, values)
+    assert np.array_equal(again.cell_tags, mesh.cell_tags)
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".vtk", ".xdmf"])
+@pytest.mark.parametrize("name", ["medit:ref", "gmsh:physical", "anistar:names"])
+def test_a_field_that_would_be_taken_for_tags_is_refused(tmp_path, suffix, name):
+    mesh = square(2)
+    path = tmp_path / f"m{suffix}"
+    with pytest.raises(FormatError, match=f"'{name}' is no name for a field"):
+        formats.write(path, mesh, {name: mesh.points[:, 0]})
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", [".VTU", ".MESH", ".MeshB", ".MSH"])
+def test_a_suffix_in_capitals_is_the_same_format(tmp_path, suffix):
+    mesh = square(2)
+    path = tmp_path / f"m{suffix}"
+    formats.write(path, mesh, {"u": mesh.points[:, 0]})
+    again, fields = formats.read(path)
+    assert np.array_equal(again.points, mesh.points)
+    assert [field.values.tolist() for field in fields.values()] == [mesh.points[:, 0].tolist()]
+
+
+def test_each_medit_mesh_takes_the_solution_of_its_own_encoding(tmp_path):
+    mesh = square(2)
+    u = mesh.points[:, 0]
+    formats.write(tmp_path / "m.meshb", mesh, {"u": 2 * u})
+    formats.write(tmp_path / "m.mesh", mesh, {"u": u})
+    for suffix, factor in ((".mesh", 1), (".meshb", 2)):
+        _, fields = formats.read(tmp_path / f"m{suffix}")
+        (field,) = fields.values()
+        assert np.array_equal(field.values, factor * u)
+
+
+def test_a_solution_left_beside_a_new_mesh_is_told(tmp_path, caplog):
+    mesh = square(2)
+    formats.write(tmp_path / "m.mesh", mesh, {"u": mesh.points[:, 0]})
+    assert caplog.messages == []
+    formats.write(tmp_path / "m.mesh", mesh)
+    assert "m.sol is left from before and will be read with it" in caplog.text

@@ -2,7 +2,7 @@ import json
 
 import numpy as np
 import pytest
-from meshes import square
+from meshes import annulus, square
 
 from anistar.adapt import AdaptOptions
 from anistar.errors import MeshingError
@@ -10,6 +10,7 @@ from anistar.fields import Field
 from anistar.loop import LoopError, LoopOptions, adapt_loop
 from anistar.metric import MetricOptions
 from anistar.remesh import RemeshOptions
+from anistar.topology import cell_volumes
 from anistar.validation import validate
 
 
@@ -190,3 +191,34 @@ class TestErrorsKeepTheStepsSoFar:
 def test_a_bad_option_is_named_with_its_bound(options, message):
     with pytest.raises(ValueError, match=message):
         LoopOptions(**options)
+
+
+def test_every_field_has_to_reach_the_target_error():
+    def solve(mesh, fields):
+        return {"bent": layer(mesh.points), "flat": mesh.points[:, 0].copy()}
+
+    options = LoopOptions(adapt=starting_at(50), target_error=5e-3)
+    loop = adapt_loop(solve, square(8), options)
+    assert min(loop.steps[0].error.values()) < 5e-3
+    assert len(loop.steps) > 1
+    assert max(loop.steps[-1].error.values()) <= 5e-3 < max(loop.steps[-2].error.values())
+
+
+def test_a_quantity_within_rtol_is_measured_against_its_last_value():
+    quantities = iter([1.0, 1.15, 1.265, 1.39])  # relative changes: .130, .091, .090
+    options = LoopOptions(
+        adapt=starting_at(50), qoi=lambda mesh, fields: next(quantities), rtol=0.1
+    )
+    loop = adapt_loop(interpolate, square(4), options)
+    assert [step.qoi for step in loop.steps] == [1.0, 1.15, 1.265]
+    assert loop.stop_reason == "quantity of interest within rtol 0.1"
+
+
+def test_every_adaptation_gets_the_first_mesh_as_the_geometry():
+    first = annulus()
+    loop = adapt_loop(interpolate, first, LoopOptions(complexities=[100] * 3))
+    area = cell_volumes(first.points, first.cells).sum()
+    for step in loop.steps[1:]:
+        assert validate(step.mesh) == []
+        (region,) = [tag for tag in step.report.remesh.tags if tag.dim == 2]
+        assert region.before == pytest.approx(area, rel=1e-14)

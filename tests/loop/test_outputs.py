@@ -122,3 +122,7 @@ class TestExpressions:
     def test_anything_else_is_refused_by_name(self, text, message):
         with pytest.raises(ValueError, match=message):
             function_of_position(text)
+
+    def test_a_pole_is_a_value_and_not_a_warning(self):
+        values = function_of_position("1 / x")(np.array([[0.0, 0.0], [2.0, 0.0]]))
+        assert values.tolist() == [np.inf, 0.5]

@@ -54,3 +54,10 @@ def test_a_bad_argument_is_named(given, message):
     arguments = {"complexities": [50, 100], "exact": layer, **given}
     with pytest.raises(ValueError, match=message):
         convergence_study(interpolate, square(4), **arguments)
+
+
+@pytest.mark.parametrize(
+    ("points", "errors"), [([9, 9], [1.0, 0.5]), ([9, 18], [0.0, 0.0]), ([9], [1.0])]
+)
+def test_there_is_no_order_where_nothing_changes(points, errors):
+    assert np.isnan(observed_order(points, errors, 2))

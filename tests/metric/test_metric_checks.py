@@ -55,3 +55,9 @@ def test_the_input_is_not_modified_and_roundoff_asymmetry_is_removed():
     assert np.array_equal(M, before)
     assert np.array_equal(checked, checked.transpose(0, 2, 1))
     assert not np.shares_memory(checked, M)
+
+
+@pytest.mark.parametrize("values", [np.ones((4, 2, 2), complex), "x", [["a", "b"]]])
+def test_a_metric_of_anything_but_real_numbers_is_refused(values):
+    with pytest.raises(TypeError, match="metric must hold real numbers, not "):
+        metric.check_metric(values)

@@ -7,7 +7,7 @@ import argparse
 from ..adapt import Adapted, adapt
 from ..formats import read, write, write_metric
 from . import console
-from .files import writable
+from .files import metric_target, writable
 from .options import adapt_options, add_metric_options, add_outside_option, add_remesh_options
 
 SUMMARY = "adapt a mesh to the fields in its file, and carry the fields over"
@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output)
-    metric_output = writable(arguments.metric_output) if arguments.metric_output else None
+    metric_output = metric_target(arguments.metric_output, output)
     options = adapt_options(arguments, metric_fields=arguments.field)
     mesh, fields = read(arguments.input)
     geometry = read(arguments.geometry)[0] if arguments.geometry else None
@@ -50,6 +50,5 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _show(source: str, points: int, cells: int, target: str, done: Adapted) -> None:
-    columns = ["mesh", "points", "cells"]
     rows = [[source, points, cells], [target, done.mesh.n_points, done.mesh.n_cells]]
-    console.show_table(f"adapted in {done.report.seconds:.2f} s", columns, rows)
+    console.show_remeshed(f"adapted in {done.report.seconds:.2f} s", rows, done.report.remesh)

@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
-from ..formats import read, read_metric
+from ..cell_arrays import cell_arrays
+from ..certificate import Certificate, certify
+from ..formats import ReadReport, read, read_metric, read_with_report, write
+from ..mesh import Mesh
+from ..metric import check_metric
 from ..quality import quality
-from ..validation import validate
+from ..topology import Float
+from ..validation import Violation, validate
 from . import console
+from .files import writable, writable_file
 
-SUMMARY = "check a mesh, and measure it in a metric"
-EXAMPLE = "anistar check out.mesh --metric out.sol --reference in.mesh"
+SUMMARY = "check a mesh; measure and certify it in a metric"
+EXAMPLE = "anistar check out.mesh --metric out.sol --reference in.mesh -o figures.vtu"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("input", help="mesh")
-    parser.add_argument("--metric", metavar="FILE", help="metric at the points")
+    parser.add_argument(
+        "--metric",
+        metavar="FILE",
+        help="metric at the points; in 2D, the stars are certified for it",
+    )
     parser.add_argument(
         "--reference", metavar="FILE", help="mesh with the same domain, tags and names"
     )
@@ -26,21 +37,74 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=1e-10,
         help="allowed relative difference of measures from the reference (default 1e-10)",
     )
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        help="write the mesh with figures of every cell: longest edge, quality, distortion, "
+        "inconsistent (.vtu)",
+    )
+    parser.add_argument(
+        "--picture", metavar="FILE", help="draw the mesh, triangles that are not certified in red"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command; 1 if the mesh breaks a rule."""
-    mesh, _ = read(arguments.input)
-    M = read_metric(arguments.metric, mesh) if arguments.metric else None
+    """Run the command; 1 if the mesh breaks a rule or a star is neither certified nor exempt."""
+    _check_targets(arguments)
+    mesh, _, found = read_with_report(arguments.input)
     reference = read(arguments.reference)[0] if arguments.reference else None
     problems = validate(mesh, reference, tolerance=arguments.tolerance)
-    figures = quality(mesh, M).as_dict()
+    M = certificate = None
+    if arguments.metric:
+        M = check_metric(read_metric(arguments.metric, mesh), dim=mesh.dim)
+        certificate = certify(mesh, M) if mesh.dim == 2 else None
+        _write(arguments, mesh, M, certificate)
+    _show(arguments, found, problems, quality(mesh, M).as_dict(), certificate)
+    is_good = certificate is None or certificate.is_certified
+    return 0 if is_good and not problems else 1
+
+
+def _check_targets(arguments: argparse.Namespace) -> None:
+    for flag, check in (("output", writable), ("picture", writable_file)):
+        path = getattr(arguments, flag)
+        if path and not arguments.metric:
+            raise ValueError(f"--{flag} needs --metric")
+        if path:
+            check(path)
+
+
+def _write(
+    arguments: argparse.Namespace, mesh: Mesh, M: Float, certificate: Certificate | None
+) -> None:
+    if arguments.output:
+        write(arguments.output, mesh, cell_arrays(mesh, M, certificate))
+    if arguments.picture:
+        if certificate is None:
+            raise ValueError(f"--picture is for 2D meshes; this one has dimension {mesh.dim}")
+        # matplotlib is an extra, needed for pictures only
+        from ..pictures import certificate_picture
+
+        certificate_picture(arguments.picture, mesh, certificate)
+
+
+def _show(
+    arguments: argparse.Namespace,
+    found: ReadReport,
+    problems: list[Violation],
+    figures: dict[str, Any],
+    certificate: Certificate | None,
+) -> None:
     if arguments.json:
-        messages = [problem.message for problem in problems]
-        console.show_json({"valid": not problems, "problems": messages, **figures})
-    else:
-        console.show_table(arguments.input, ["", ""], [[k, v] for k, v in figures.items()])
-        for problem in problems:
-            console.say(f"{problem.kind}: {problem.message}")
-        console.say("not valid" if problems else "valid")
-    return 1 if problems else 0
+        said = {"valid": not problems, "problems": [p.message for p in problems], "read": found}
+        if certificate is not None:
+            said["certificate"] = certificate.as_dict()
+        console.show_json({**said, **figures})
+        return
+    rows = [[name, value] for name, value in figures.items() if value is not None]
+    console.show_table(arguments.input, ["", ""], rows)
+    for problem in problems:
+        console.say(f"{problem.kind}: {problem.message}")
+    console.say("not valid" if problems else "valid")
+    if certificate is not None:
+        console.say(certificate.verdict)

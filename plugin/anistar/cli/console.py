@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -12,6 +13,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from ..remesh_report import RemeshReport
 from ..report import to_json
 
 
@@ -45,6 +47,13 @@ def as_text(value: Any) -> str:
     return str(value)
 
 
+def show_remeshed(title: str, rows: Sequence[Sequence[Any]], report: RemeshReport) -> None:
+    """Print the sizes of both meshes, and why the mesher stopped if a budget stopped it."""
+    show_table(title, ["mesh", "points", "cells"], rows)
+    if not report.converged:
+        say(f"not converged: the mesher stopped at {report.stop_reason}, the mesh is valid")
+
+
 @contextmanager
 def progress_bar(total: int | None, *, is_quiet: bool = False) -> Iterator[Any]:
     """Give a callable ``advance(what)`` that moves a progress bar on stderr."""
@@ -55,7 +64,7 @@ def progress_bar(total: int | None, *, is_quiet: bool = False) -> Iterator[Any]:
         TimeElapsedColumn(),
         console=Console(stderr=True),
         transient=True,
-        disable=is_quiet,
+        disable=is_quiet or not sys.stderr.isatty(),
     )
     with bar:
         task = bar.add_task("starting", total=total)

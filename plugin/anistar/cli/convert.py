@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
-    output = writable(arguments.output)
+    output = writable(arguments.output, is_mesh=False)
     mesh, fields, report = read_with_report(arguments.input)
     write(output, mesh, fields)
     if arguments.json:

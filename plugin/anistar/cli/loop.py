@@ -52,16 +52,21 @@ def run(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.output)
     folder.mkdir(parents=True, exist_ok=True)
     solve = FileSolver(arguments.solver, folder, arguments.files)
+    steps: list[Step] = []
     total = len(options.complexities) + 1 if options.complexities else None
     with console.progress_bar(total, is_quiet=arguments.json) as advance:
 
         def moved(step: Step) -> None:
+            steps.append(step)
             advance(f"{step.mesh.n_points} points")
 
         try:
             loop = adapt_loop(solve, mesh, options, callback=moved)
         except LoopError as error:
             _write(folder, error.loop)
+            raise
+        except KeyboardInterrupt:
+            _write(folder, Loop(tuple(steps), "interrupted"))
             raise
     _write(folder, loop)
     if arguments.json:

@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
-    output = writable(arguments.output)
+    output = writable(arguments.output, is_mesh=False)
     options = adapt_options(arguments, metric_fields=arguments.field)
     mesh, fields = read(arguments.input)
     names = metric_field_names(fields, options.metric_fields)

@@ -3,31 +3,41 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 from ..adapt import AdaptOptions
 from ..aliases import MMG
-from ..metric.options import PETSC_PREFIX
+from ..metric.aliases import our_name, our_value
 from ..transfer import OUTSIDE
 
-# Foreign codes say "off" by a number where we say "off".
-_OFF_NUMBERS = {"gradation_factor": -1.0, "a_max": 0.0}
+Number = TypeVar("Number", int, float)
 
 
 def _number_or_off(name: str) -> Any:
-    def parsed(text: str) -> float | str | None:
+    def parsed(text: str) -> Any:
         if text == "auto":
             return text
-        value = None if text == "off" else float(text)
-        return None if value == _OFF_NUMBERS.get(name) else value
+        return None if text == "off" else our_value(name, float(text))
 
     parsed.__name__ = "number or 'off'"
     return parsed
 
 
+def numbers(text: str) -> tuple[float, ...]:
+    """Parse comma-separated numbers."""
+    return _listed(text, float, "numbers")
+
+
 def _integers(text: str) -> tuple[int, ...]:
-    return tuple(int(part) for part in text.split(",") if part)
+    return _listed(text, int, "integers")
+
+
+def _listed(text: str, kind: Callable[[str], Number], what: str) -> tuple[Number, ...]:
+    try:
+        return tuple(kind(part) for part in text.split(",") if part)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"{text!r} is no list of {what} like 1,2,3") from error
 
 
 _METRIC: dict[str, tuple[Any, str]] = {
@@ -122,15 +132,9 @@ def canonical_flags(words: Sequence[str]) -> list[str]:
     return [_canonical(word) for word in words]
 
 
-def numbers(text: str) -> tuple[float, ...]:
-    """Parse comma-separated numbers."""
-    return tuple(float(part) for part in text.split(",") if part)
-
-
 def _canonical(word: str) -> str:
     flag, equals, value = word.partition("=")
-    bare = flag.lstrip("-").removeprefix(PETSC_PREFIX + "_")
-    name = MMG.get(bare, bare.replace("-", "_"))
+    name = our_name(flag.lstrip("-").replace("-", "_"), MMG)
     if not flag.startswith("-") or name not in (*_METRIC, *_REMESH) or flag == "-p":
         return word
     return f"--{name.replace('_', '-')}{equals}{value}"
@@ -138,12 +142,15 @@ def _canonical(word: str) -> str:
 
 def _add(group: argparse._ArgumentGroup, table: dict[str, tuple[Any, str]]) -> None:
     for name, (kind, text) in table.items():
+        optional: dict[str, Any] = {}
+        if name in _OPTIONAL_VALUE:
+            optional = {"nargs": "?", "const": _OPTIONAL_VALUE[name]}
         group.add_argument(
             f"--{name.replace('_', '-')}",
             dest=name,
             type=kind,
             default=argparse.SUPPRESS,
-            **({"nargs": "?", "const": _OPTIONAL_VALUE[name]} if name in _OPTIONAL_VALUE else {}),
+            **optional,
             metavar="X" if kind is not str else "NAME",
             help=text,
         )

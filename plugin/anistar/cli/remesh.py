@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from ..errors import FormatError
-from ..formats import read, read_metric, write, write_metric
-from ..remesh import RemeshReport, remesh
+from ..fields import Field
+from ..formats import METRIC, read, read_metric, write, write_metric
+from ..formats.suffixes import SOLUTION_OF, solution_beside, suffix_of
+from ..remesh import remesh
+from ..remesh_report import RemeshReport
 from ..transfer import transfer
 from . import console
-from .files import companion, writable
+from .files import metric_target, writable
 from .options import adapt_options, add_remesh_options
 
 SUMMARY = "remesh to a given metric, and carry the fields over"
@@ -28,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--metric-output",
         metavar="FILE",
-        help="metric at the new points; for out.mesh without fields the default is out.sol",
+        help="metric at the new points; for out.mesh without fields it goes to out.sol anyway",
     )
     parser.add_argument("--geometry", metavar="FILE", help="mesh whose boundary is the geometry")
     add_remesh_options(parser)
@@ -37,9 +41,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output)
-    metric_output = writable(arguments.metric_output) if arguments.metric_output else None
+    metric_output = metric_target(arguments.metric_output, output)
     options = adapt_options(arguments)
-    source = arguments.metric or companion(arguments.input)
+    beside = solution_beside(Path(arguments.input))
+    source = Path(arguments.metric) if arguments.metric else beside
     if source is None:
         raise FormatError(f"no metric: give --metric, there is no .sol beside {arguments.input}")
     mesh, fields = read(arguments.input)
@@ -47,21 +52,21 @@ def run(arguments: argparse.Namespace) -> int:
     geometry = read(arguments.geometry)[0] if arguments.geometry else None
     done = remesh(mesh, M, options.remesh, geometry=geometry)
     # The solution beside a medit mesh is the metric itself, not a field to carry.
-    carried = fields if arguments.metric else {}
-    write(output, done.mesh, transfer(mesh, carried, done.mesh, options.transfer).fields)
-    if metric_output is None and not carried and output.suffix in (".mesh", ".meshb"):
-        metric_output = output.with_suffix(".sol")
+    carried = {} if source == beside else fields
+    fields = transfer(mesh, carried, done.mesh, options.transfer).fields
+    if metric_output is None and not fields and suffix_of(output) in SOLUTION_OF:
+        fields = {METRIC: Field(done.metric)}
+    write(output, done.mesh, fields)
     if metric_output is not None:
         write_metric(metric_output, done.mesh, done.metric)
     if arguments.json:
         console.show_json(done.report)
     else:
-        columns = ["mesh", "points", "cells"]
         rows = [
             [arguments.input, mesh.n_points, mesh.n_cells],
             [arguments.output, done.mesh.n_points, done.mesh.n_cells],
         ]
-        console.show_table("remeshed", columns, rows)
+        console.show_remeshed("remeshed", rows, done.report)
         console.say(_certified(done.report))
     return 0
 

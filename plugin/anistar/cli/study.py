@@ -16,7 +16,9 @@ from . import console
 from .options import adapt_options, add_metric_options, add_remesh_options, numbers
 
 SUMMARY = "measure how the error falls on adapted meshes"
-EXAMPLE = 'anistar study in.vtu --exact "tanh(20 * (x + y - 1))" --complexities 500,1000,2000'
+EXAMPLE = (
+    'anistar study in.vtu --exact "tanh(20 * (x**2 + y**2 - 0.5))" --complexities 500,1000,2000'
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
-    output = writable(arguments.output)
+    output = writable(arguments.output, is_mesh=False)
     options = TransferOptions(
         method=arguments.method,
         outside=arguments.outside,
@@ -42,8 +42,9 @@ def run(arguments: argparse.Namespace) -> int:
         console.show_json(done.report)
         return 0
     rows = [
-        [name, *change.integral[0][:1], *change.integral[1][:1]]
+        [name if len(change.integral[0]) == 1 else f"{name}[{index}]", before, after]
         for name, change in done.report.changes.items()
+        for index, (before, after) in enumerate(zip(*change.integral, strict=True))
     ]
     title = (
         f"{done.report.points_outside} points outside, by {done.report.max_distance:.3g} at most"

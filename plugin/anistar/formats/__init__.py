@@ -20,10 +20,12 @@ from .assembly import ReadReport, assembled
 from .atomic import replaced
 from .export import exported
 from .raw import RawMesh
+from .suffixes import SOLUTIONS, suffix_of
 
 __all__ = [
     "FormatError",
     "ReadReport",
+    "is_known",
     "read",
     "read_metric",
     "read_with_report",
@@ -46,7 +48,6 @@ _WRITERS: dict[str, Callable[[Path, Mesh, Mapping[str, Field]], None]] = {
     ".msh": gmsh.write,
     ".vtu": vtu.write,
 }
-_SOLUTIONS = (".sol", ".solb")
 METRIC = "metric"
 
 
@@ -79,11 +80,11 @@ def read(path: PathLike) -> tuple[Mesh, dict[str, Field]]:
 def read_with_report(path: PathLike) -> tuple[Mesh, dict[str, Field], ReadReport]:
     """Read a mesh and its fields, and tell what was changed to make them valid."""
     path = Path(path)
-    if path.suffix in _SOLUTIONS:
+    if suffix_of(path) in SOLUTIONS:
         raise FormatError(f"cannot read {path}: a solution file holds no mesh, give the mesh file")
     if not path.is_file():
         raise FormatError(f"cannot read {path}: no such file")
-    return assembled(_READERS.get(path.suffix, meshio_guard.read)(path), path)
+    return assembled(_READERS.get(suffix_of(path), meshio_guard.read)(path), path)
 
 
 def write(
@@ -109,16 +110,24 @@ def write(
     """
     path = Path(path)
     checked = as_fields(mesh, fields)
-    if path.suffix in _WRITERS:
-        _WRITERS[path.suffix](path, mesh, checked)
+    if suffix_of(path) in _WRITERS:
+        _WRITERS[suffix_of(path)](path, mesh, checked)
         return
-    if path.suffix in _SOLUTIONS:
+    if suffix_of(path) in SOLUTIONS:
         medit.write_solution(path, mesh, checked)
         return
+    if not is_known(path):
+        raise FormatError(f"cannot write {path}: no format has the suffix {path.suffix!r}")
     if mesh.names:
         _log.warning("%s: this format has no names, they are not written", path)
     with replaced(path) as temporary:
         meshio_guard.write(temporary, exported(mesh, checked), path)
+
+
+def is_known(path: PathLike) -> bool:
+    """Return whether a format has the suffix of the path."""
+    suffix = suffix_of(Path(path))
+    return suffix in (*_WRITERS, *SOLUTIONS) or meshio_guard.is_known(suffix)
 
 
 def read_metric(path: PathLike, mesh: Mesh) -> Float:
@@ -159,7 +168,7 @@ def read_metric(path: PathLike, mesh: Mesh) -> Float:
 
 
 def _metric_field(path: Path) -> tuple[str, Any]:
-    if path.suffix in _SOLUTIONS:
+    if suffix_of(path) in SOLUTIONS:
         arrays = medit.solution_arrays(gmf.load(path), "SolAtVertices", "points")
         if len(arrays) != 1:
             raise FormatError(f"{path}: a metric is one field at the points, not {len(arrays)}")

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FormatError
+from .suffixes import BINARY, suffix_of
 from .text_rows import integers, parsed, printed
 
 # keyword -> (code, integers in a row); Vertices and SolAt* have their own layout.
@@ -95,7 +96,7 @@ def load(path: Path) -> Container:
         If the file is unreadable, truncated or not what it says.
     """
     try:
-        if path.suffix in (".meshb", ".solb"):
+        if suffix_of(path) in BINARY:
             return _Binary(path.read_bytes()).container()
         return _from_text(path.read_text(encoding="utf-8", errors="replace"))
     except OSError as error:
@@ -106,7 +107,7 @@ def load(path: Path) -> Container:
 
 def save(path: Path, container: Container) -> None:
     """Write the encoding that the suffix names."""
-    if path.suffix in (".meshb", ".solb"):
+    if suffix_of(path) in BINARY:
         path.write_bytes(_to_bytes(container))
     else:
         path.write_text(_to_text(container), encoding="utf-8")

@@ -19,6 +19,7 @@ from ..mesh import Mesh
 from . import gmf
 from .atomic import replaced
 from .raw import Array, Block, RawMesh
+from .suffixes import BINARY, SOLUTION_OF, solution_beside, suffix_of
 from .tensor_orders import from_components, to_components
 
 _log = logging.getLogger(__name__)
@@ -33,7 +34,6 @@ _REFUSED = {
     "TrianglesP2": "triangle6",
     "TetrahedraP2": "tetra10",
 }
-_SOLUTION_SUFFIX = {".mesh": ".sol", ".meshb": ".solb"}
 _TYPES = {"scalar": 1, "label": 1, "vector": 2, "tensor": 3}
 
 
@@ -51,11 +51,9 @@ def read_mesh(path: Path) -> RawMesh:
     corners = np.concatenate(kept)[:, 0] - 1
     raw = RawMesh(container.points, blocks, corners)
     raw.names = {(int(dim), int(tag)): str(name) for dim, tag, name in _names(container, path)}
-    for suffix in (".sol", ".solb"):
-        companion = path.with_suffix(suffix)
-        if companion.is_file():
-            _add_fields(raw, companion)
-            break
+    companion = solution_beside(path)
+    if companion is not None:
+        _add_fields(raw, companion)
     return raw
 
 
@@ -134,15 +132,17 @@ def write_mesh(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
         container.tables["Ridges"] = np.arange(1, len(mesh.edges) + 1, dtype=np.int64)[:, None]
     if len(mesh.corners):
         container.tables["Corners"] = mesh.corners.astype(np.int64)[:, None] + 1
-    if mesh.names and path.suffix == ".mesh":
+    if mesh.names and suffix_of(path) not in BINARY:
         entries = [[dim, tag, name] for (dim, tag), name in sorted(mesh.names.items())]
         container.notes["names"] = entries
     elif mesh.names:
         _log.warning("%s: the binary medit format has no names, they are not written", path)
     with replaced(path) as temporary:
         gmf.save(temporary, container)
-    if fields:
-        write_solution(path.with_suffix(_SOLUTION_SUFFIX[path.suffix]), mesh, fields)
+        if fields:  # first, so that no new mesh is left with old fields when they fail
+            write_solution(path.with_suffix(SOLUTION_OF[suffix_of(path)]), mesh, fields)
+    if not fields and (stale := solution_beside(path)) is not None:
+        _log.warning("%s: %s is left from before and will be read with it", path, stale.name)
 
 
 def write_solution(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
@@ -158,7 +158,7 @@ def write_solution(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
         types = [_TYPES[str(field.kind)] for field in chosen.values()]
         container.solutions[keyword] = gmf.Solution(types, np.concatenate(columns, axis=1))
         noted[where] = [[name, str(field.kind)] for name, field in chosen.items()]
-    if path.suffix == ".sol":
+    if suffix_of(path) not in BINARY:
         container.notes["fields"] = noted
     with replaced(path) as temporary:
         gmf.save(temporary, container)

@@ -20,9 +20,12 @@ import numpy as np
 
 from ..errors import FormatError
 from .raw import KIND_DIM, Block, RawMesh
+from .suffixes import suffix_of
 
-# Integer arrays that carry tags, the first one present is taken.
-TAG_KEYS = ("medit:ref", "gmsh:physical", "cell_tags", "refs", "gmsh:geometrical")
+# The integer array of tags in the files that we write; where it is present no other counts.
+TAGS = "medit:ref"
+# Integer arrays that carry tags in other files, the first one that says anything is taken.
+FOREIGN_TAGS = ("gmsh:physical", "cell_tags", "refs", "gmsh:geometrical")
 # JSON of [dim, tag, name] as bytes, in the field data of the files that we write.
 NAMES = "anistar:names"
 _XDMF = (".xdmf", ".xmf")
@@ -47,7 +50,9 @@ def guarded(action: str, path: Path, temporary: Path | None = None) -> Iterator[
         reason = " ".join(said.getvalue().split()) or "meshio gave up"
         raise FormatError(f"cannot {action} {path}: {reason}") from error
     except Exception as error:
-        reason = str(error) or type(error).__name__
+        reason = " ".join(str(error).split())
+        if not isinstance(error, ValueError | meshio.ReadError | meshio.WriteError):
+            reason = f"meshio fails with {type(error).__name__} {reason}".rstrip()
         reason = reason.replace(str(temporary or path), str(path))
         raise FormatError(f"cannot {action} {path}: {reason}") from error
 
@@ -60,19 +65,37 @@ def read(path: Path, file_format: str | None = None) -> RawMesh:
         mesh = meshio.read(path, file_format=file_format)
         raw = RawMesh(np.asarray(mesh.points, dtype=np.float64), _blocks(mesh))
     raw.names = _names(path, mesh)
-    raw.six = "xdmf" if path.suffix in _XDMF else "vtk" if path.suffix in _VTK else None
-    raw.point_data = {name: data for name, data in mesh.point_data.items() if not _hidden(name)}
-    if not _has_tags(mesh):
+    suffix = suffix_of(path)
+    raw.six = "xdmf" if suffix in _XDMF else "vtk" if suffix in _VTK else None
+    raw.point_data = {name: data for name, data in mesh.point_data.items() if not is_reserved(name)}
+    if _tag_key(mesh) is None:
         _add_cell_sets(mesh, raw)
     return raw
 
 
-def _hidden(name: str) -> bool:
-    return name in TAG_KEYS or name.startswith("gmsh:")
+def is_known(suffix: str) -> bool:
+    """Return whether meshio has a format of this suffix."""
+    return suffix in meshio.extension_to_filetypes
 
 
-def _has_tags(mesh: Any) -> bool:
-    return any(key in mesh.cell_data for key in TAG_KEYS)
+def is_reserved(name: str) -> bool:
+    """Return whether data of this name is never a field."""
+    return name in (TAGS, NAMES) or name.startswith("gmsh:")
+
+
+def refuse_reserved(content: RawMesh, path: Path) -> None:
+    """Raise if a field has a name under which it would not be read again.
+
+    Raises
+    ------
+    FormatError
+        Names the field.
+    """
+    for name in (*content.point_data, *content.blocks[0].data):
+        if is_reserved(name):
+            raise FormatError(
+                f"cannot write {path}: {name!r} is no name for a field, tags are stored under it"
+            )
 
 
 def _blocks(mesh: Any) -> list[Block]:
@@ -83,7 +106,7 @@ def _blocks(mesh: Any) -> list[Block]:
         data = {
             name: np.asarray(values[i])
             for name, values in mesh.cell_data.items()
-            if not _hidden(name)
+            if name != key and not is_reserved(name)
         }
         known = block.type in KIND_DIM
         rows = np.asarray(block.data) if known else np.zeros((len(block.data), 0), np.int64)
@@ -92,12 +115,19 @@ def _blocks(mesh: Any) -> list[Block]:
 
 
 def _tag_key(mesh: Any) -> str | None:
-    """Return the first tag array that says anything: all zeros count as not given."""
-    present = [key for key in TAG_KEYS if key in mesh.cell_data]
-    for key in present:
-        if any(np.any(np.asarray(values)) for values in mesh.cell_data[key]):
+    """Return the name of the tags: ours, or the first integers that are not all zero."""
+    if TAGS in mesh.cell_data:
+        return TAGS
+    for key in FOREIGN_TAGS:
+        blocks = [np.asarray(values) for values in mesh.cell_data.get(key, ())]
+        if any(values.any() for values in blocks) and all(map(_holds_integers, blocks)):
             return key
     return None
+
+
+def _holds_integers(values: Any) -> bool:
+    # Some formats store integers as floats.
+    return bool(values.dtype.kind in "iu" or (np.isfinite(values) & (values % 1 == 0)).all())
 
 
 def _names(path: Path, mesh: Any) -> dict[tuple[int, int], str]:
@@ -135,14 +165,15 @@ def _add_cell_sets(mesh: Any, raw: RawMesh) -> None:
 
 def write(temporary: Path, content: RawMesh, path: Path) -> None:
     """Write through meshio, tags as the integer array `medit:ref`; errors name `path`."""
+    refuse_reserved(content, path)
     blocks, options = content.blocks, {}
-    if path.suffix in _XDMF:
+    if suffix_of(path) in _XDMF:
         # meshio cannot read the single points back that it writes among other cells, and puts
         # the numbers into a second file that knows the temporary name.
         blocks = [block for block in blocks if block.kind != "vertex"]
         options = {"data_format": "XML"}
     cell_data = {name: [block.data[name] for block in blocks] for name in blocks[0].data}
-    cell_data[TAG_KEYS[0]] = [np.asarray(block.tags) for block in blocks]
+    cell_data[TAGS] = [np.asarray(block.tags) for block in blocks]
     with guarded("write", path, temporary):
         mesh = meshio.Mesh(
             content.points,

@@ -30,8 +30,10 @@ _VTK_DTYPE = {"float64": "Float64", "int64": "Int64", "int32": "Int32", "uint8":
 def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
     """Write mesh, tags, names and fields."""
     content = exported(mesh, fields)
+    meshio_guard.refuse_reserved(content, path)
     with replaced(path) as temporary:
-        temporary.write_text("".join(_document(content)), encoding="ascii")
+        document = "".join(_document(content))
+        temporary.write_text(document, encoding="ascii", errors="xmlcharrefreplace")
 
 
 def _document(content: RawMesh) -> list[str]:
@@ -57,7 +59,7 @@ def _document(content: RawMesh) -> list[str]:
         "</Cells>\n<PointData>\n",
         *[_array(name, values) for name, values in content.point_data.items()],
         "</PointData>\n<CellData>\n",
-        _array(meshio_guard.TAG_KEYS[0], tags),
+        _array(meshio_guard.TAGS, tags),
         *[_array(name, values) for name, values in cell_data.items()],
         "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
     ]

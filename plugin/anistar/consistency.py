@@ -1,0 +1,53 @@
+"""The parameters of Algorithm 2, which refines until every star agrees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConsistencyOptions:
+    """Parameters of Algorithm 2, named as in Boissonnat, Wormser, Yvinec, RR-7712 v2.
+
+    Parameters
+    ----------
+    alpha_0 : float
+        Rule 1 refines a simplex whose circumradius is at least ``alpha_0 * sf``; the sizing
+        field sf is 1 in the metric, less where ``gamma_0`` asks for it. A unit equilateral
+        triangle has .577, so .95 leaves a quasi-unit mesh alone.
+    rho_0 : float
+        Rule 2: largest radius-edge ratio; above sqrt 2, the classical bound for termination.
+    sigma_0 : float
+        Rule 3: smallest sliverity. In 2D a triangle that passes rule 2 is never a sliver.
+    gamma_0 : float or None
+        Bound on the distortion within an element, through the sizing field. None, the
+        default, is off: measured, it only adds points.
+    delta : float
+        Radius of the picking region relative to the circumradius.
+    beta : float
+        New quasi-cospherical configurations count up to ``beta`` circumradii.
+    candidates : int
+        Points that pick_valid tries before it takes the best one.
+    max_growth : float
+        The run stops when it has added this fraction of vertices.
+    """
+
+    alpha_0: float = 0.95
+    rho_0: float = 1.5
+    sigma_0: float = 0.05
+    gamma_0: float | None = None
+    delta: float = 0.4
+    beta: float = 2.0
+    candidates: int = 16
+    max_growth: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("alpha_0", "rho_0", "sigma_0", "beta", "max_growth"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+        if not 0 < self.delta < 1:
+            raise ValueError(f"delta must be in (0, 1), got {self.delta}")
+        if self.gamma_0 is not None and not self.gamma_0 > 1:
+            raise ValueError(f"gamma_0 must be above 1, got {self.gamma_0}")
+        if self.candidates < 1:
+            raise ValueError(f"candidates must be at least 1, got {self.candidates}")

@@ -1,0 +1,129 @@
+"""What a remeshing did, and how good its result is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from .errors import MeshingError
+from .mesh import Mesh
+from .topology import cell_volumes, facet_measures, measure_by_tag
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TagMeasure:
+    """Length, area or volume that a tag carries, in the geometry and in the new mesh."""
+
+    dim: int
+    tag: int
+    name: str
+    before: float
+    after: float
+
+    @property
+    def change(self) -> float:
+        """Relative change of the measure."""
+        return self.after / self.before - 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RemeshReport:
+    """What `remesh` did and how good the result is.
+
+    Attributes
+    ----------
+    converged : bool
+        The run ended by itself, not by a budget; with ``until_consistent`` also: every star
+        agrees.
+    stop_reason : str
+        ``finished``, ``max_vertices`` or ``max_seconds``.
+    n_points, n_cells : int
+        Size of the new mesh.
+    statistics : dict
+        ``edge_unit`` (fraction of edges within [1/sqrt 2, sqrt 2]), ``edge_min``, ``edge_mean``,
+        ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
+        ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
+    agreement : str
+        ``done``, ``off``, or ``skipped: `` and why.
+    consistency : dict
+        Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
+        ``inconsistency``, ``boundary``), ``rounds`` and ``stop_reason``.
+    simplex_ok, star_ok : float or None
+        Certified fractions of the cells and of the stars (see `certify`); None when the
+        agreement phase was off.
+    distortion : dict of str to float
+        Quantiles of ln gamma, the distortion of the metric along the edges.
+    tags : tuple of TagMeasure
+        Measure of every facet and region tag against the geometry.
+    counts : dict of str to float
+        Operations made.
+    seconds : dict of str to float
+        Wall time of each phase.
+    """
+
+    converged: bool
+    stop_reason: str
+    n_points: int
+    n_cells: int
+    statistics: dict[str, Any]
+    agreement: str
+    consistency: dict[str, Any]
+    simplex_ok: float | None
+    star_ok: float | None
+    distortion: dict[str, float]
+    tags: tuple[TagMeasure, ...]
+    counts: dict[str, float]
+    seconds: dict[str, float]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the report as JSON builtins."""
+        out = asdict(self)
+        out["tags"] = [{**asdict(tag), "change": tag.change} for tag in self.tags]
+        return out
+
+
+def report_of(raw: Mapping[str, Any], geometry: Mesh, new: Mesh) -> RemeshReport:
+    """Return the report on what the core returned.
+
+    Raises
+    ------
+    MeshingError
+        If a tag of the geometry is gone.
+    """
+    return RemeshReport(
+        converged=raw["stop_reason"] == "finished"
+        and raw["consistency"]["stop_reason"] in ("", "consistent"),
+        stop_reason=raw["stop_reason"],
+        n_points=new.n_points,
+        n_cells=new.n_cells,
+        statistics=raw["statistics"],
+        agreement=raw["agreement"],
+        consistency=raw["consistency"],
+        simplex_ok=raw["simplex_ok"],
+        star_ok=raw["star_ok"],
+        distortion=raw["distortion"],
+        tags=tag_measures(geometry, new),
+        counts=raw["counts"],
+        seconds=raw["seconds"],
+    )
+
+
+def tag_measures(geometry: Mesh, new: Mesh) -> tuple[TagMeasure, ...]:
+    """Compare what every tag carries; a tag that is gone is an error."""
+    found = []
+    for dim, kind in ((geometry.dim - 1, "facet"), (geometry.dim, "cell")):
+        before, after = (_measures(mesh, kind) for mesh in (geometry, new))
+        lost = sorted(set(before) - set(after))
+        if lost:
+            raise MeshingError(f"the new mesh lost {kind} tag {lost[0]}")
+        for tag, measure in before.items():
+            name = geometry.names.get((dim, tag), "")
+            found.append(TagMeasure(dim=dim, tag=tag, name=name, before=measure, after=after[tag]))
+    return tuple(found)
+
+
+def _measures(mesh: Mesh, kind: str) -> dict[int, float]:
+    if kind == "facet":
+        return measure_by_tag(facet_measures(mesh.points, mesh.facets), mesh.facet_tags)
+    return measure_by_tag(cell_volumes(mesh.points, mesh.cells), mesh.cell_tags)

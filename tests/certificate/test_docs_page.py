@@ -1,0 +1,67 @@
+"""The code of the page on certificates runs, and its tables are those of the script."""
+
+import importlib.util
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = (DOCS / "certificate.md").read_text()
+
+
+@pytest.fixture(scope="module")
+def script():
+    pytest.importorskip("matplotlib")
+    spec = importlib.util.spec_from_file_location("pages", DOCS / "make_certificate_pictures.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def rows_of(header):
+    """Return the cells of the table below a line that starts with the header, as text."""
+    lines = PAGE[PAGE.index(header) :].splitlines()[2:]
+    table = lines[: next(k for k, line in enumerate(lines) if not line.startswith("|"))]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table]
+
+
+def test_a_star_is_checked_by_hand_as_the_page_does_it(tmp_path):
+    blocks = re.findall(r"^```python\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
+    (tmp_path / "page.py").write_text("\n\n".join(blocks))
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "page.py"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("certified: star_ok = 1 (")
+    assert "is" in done.stdout
+    assert re.search(r"vertex \d+ is 0\.\d+ from the centre", done.stdout)
+
+
+def test_the_table_of_constants_solves_the_inequalities_of_the_theorem(script):
+    rows = rows_of(r"| $\gamma_0$ |")
+    assert [float(row[0]) for row in rows] == list(script.GAMMAS)
+    for row in rows:
+        gamma = float(row[0])
+        for k, delta in enumerate(script.DELTAS):
+            rho, beta, angle = (float(cell.strip("°")) for cell in row[1 + 3 * k : 4 + 3 * k])
+            assert (1 - delta) * rho / gamma**3 == pytest.approx(2, rel=5e-3)
+            assert (1 - delta) * beta / (gamma**3 * (1 + delta)) == pytest.approx(2, rel=5e-3)
+            assert angle == pytest.approx(script.smallest_constants(gamma, delta)[2], abs=0.06)
+
+
+def test_the_pictures_are_made_and_small(script, tmp_path, monkeypatch):
+    monkeypatch.setattr(script, "RUNS", {"slow-before": script.RUNS["slow-before"]})
+    row = script.make("slow-before", script.disk(0.1), tmp_path)
+    failing = [int(part) for part in row[3].split(" / ")]
+    assert failing[0] < failing[1]
+    assert (tmp_path / "certificate-slow-before.png").stat().st_size < 200_000
+    for name in script.SHOWN:
+        assert (DOCS / "images" / f"certificate-{name}.png").stat().st_size < 200_000
