@@ -204,8 +204,7 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
                : "more than a billion") +
           " edges on a curve with tag " + std::to_string(curve.tag) +
           ", more than there may be vertices: it begins near " + place(curve.at(0)) +
-          ", " + std::to_string(outline.vertices.size()) +
-          " vertices come before it");
+          ", " + std::to_string(outline.vertices.size()) + " vertices come before it");
     const std::vector<double> t = cut(curve, table, hausdorff);
     // the seam of a loop stays: a parameter must begin somewhere
     Index previous = fixed(curve.vertices.front());

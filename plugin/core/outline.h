@@ -53,9 +53,8 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
 
 /// Edges that part x from its place beside the geometry's polyline: x lies between them
 /// and the polyline.
-[[nodiscard]] std::vector<Index> edges_before(const Geometry &geometry,
-                                              const Outline &outline,
-                                              const Vector<2> &x);
+[[nodiscard]] std::vector<Index>
+edges_before(const Geometry &geometry, const Outline &outline, const Vector<2> &x);
 
 /// Edges that meet others anywhere but at a common end, or a free point.
 [[nodiscard]] std::vector<Index> conflicts(const Outline &outline);
