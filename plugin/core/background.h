@@ -37,11 +37,6 @@ public:
     return make_vertex<d>(x, metric(x, cell));
   }
 
-  /// How far outside the mesh x lies.
-  [[nodiscard]] double distance(const Vector<d> &x, Index cell) const {
-    return locator_.locate(x, cell).distance;
-  }
-
   [[nodiscard]] const Locator<d> &locator() const { return locator_; }
 
 private:

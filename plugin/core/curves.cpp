@@ -162,6 +162,7 @@ void Curve::fit(std::vector<Vector<2>> points, const Projection *projection) {
   for (std::size_t k = 0; k < n; ++k)
     chord[k] = points_[k + 1] - points_[k];
   is_straight_.assign(n, n == 1);
+  is_chord_.assign(n, false);
   const auto joint = [&](std::size_t k) { return k > 0 || is_loop; };
   const auto before = [&](std::size_t k) { return k > 0 ? k - 1 : n - 1; };
   for (std::size_t k = 0; k < n; ++k)
@@ -221,7 +222,7 @@ Vector<2> Curve::at(double t) const {
     const Vector<2> chord = points_[k + 1] - points_[k];
     x += s * (1 - s) * ((1 - s) * (start_[k] - chord) - s * (end_[k] - chord));
   }
-  return projection_ && *projection_ ? (*projection_)(x, tag) : x;
+  return projection_ && *projection_ && !is_chord_[k] ? (*projection_)(x, tag) : x;
 }
 
 Vector<2> Curve::on_polyline(double t) const {

@@ -54,13 +54,13 @@ public:
 
   /// Fixes the shape. @pre `points` hold the positions of `vertices`.
   void fit(std::vector<Vector<2>> points, const Projection *projection);
-  /// Replaces segment k by its chord.
-  void straighten(std::size_t k) { is_straight_[k] = true; }
+  /// Replaces segment k by its chord, which no projection moves any more.
+  void straighten(std::size_t k) { is_straight_[k] = is_chord_[k] = true; }
 
 private:
   std::vector<Vector<2>> points_;
   std::vector<Vector<2>> start_, end_; ///< Hermite derivatives of each segment
-  std::vector<bool> is_straight_;
+  std::vector<bool> is_straight_, is_chord_;
   const Projection *projection_ = nullptr;
 };
 

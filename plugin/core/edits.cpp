@@ -225,10 +225,10 @@ void fill_collapse(Workspace &w, Collapse &collapse) {
 
 void renumber(Workspace &w) {
   const std::vector<Index> rank = sort_along_curve(w.mesh);
-  for (CurveEdge &edge : w.on_curves.curve_edges) {
-    edge.v0 = rank[static_cast<std::size_t>(edge.v0)];
-    edge.v1 = rank[static_cast<std::size_t>(edge.v1)];
-  }
+  for (CurveEdge &edge : w.on_curves.curve_edges)
+    for (Index *v : {&edge.v0, &edge.v1})
+      if (*v != none) // an entry that a collapse left behind has lost its vertex
+        *v = rank[static_cast<std::size_t>(*v)];
 }
 
 } // namespace anistar

@@ -31,18 +31,22 @@ constexpr double largest_agreeing_distortion = .7;
 /// fraction of its extent is another domain.
 constexpr double largest_gap = .25;
 
-void check_gap(const Background<2> &background, const Outline &outline) {
+/// Asks the points of the geometry, not its curves: a mesh is always its own geometry.
+void check_gap(const Background<2> &background, const GeometryInput &geometry) {
   Box<2> box;
   for (const Vector<2> &x : background.locator().points())
     box.extend(x);
   const double extent = (box.high - box.low).maxCoeff();
-  for (std::size_t v = 0; v < outline.vertices.size(); ++v) {
-    const Vector<2> &x = outline.vertices[v].x;
-    const double gap = background.distance(x, outline.background[v]);
-    if (gap > largest_gap * extent)
+  Index cell = none;
+  for (const Facet<2> &facet : geometry.facets) {
+    const Vector<2> &x = geometry.points[static_cast<std::size_t>(facet[0])];
+    const Location<2> at = background.locator().locate(x, cell);
+    cell = at.cell;
+    if (at.distance > largest_gap * extent)
       throw MeshingError(
-          "the geometry reaches beyond the mesh that carries the metric, by " +
-              std::to_string(gap / extent) + " of its extent where " +
+          "the geometry reaches beyond the mesh that carries the metric, "
+          "by " +
+              std::to_string(at.distance / extent) + " of its extent where " +
               std::to_string(largest_gap) + " is allowed,",
           x);
   }
@@ -161,11 +165,10 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   Stopwatch watch(monitor, out.seconds);
 
   watch.phase("curves");
+  check_gap(background, input);
   Geometry geometry = make_geometry(input, &projection);
   Outline outline =
       make_outline(geometry, background, settings.hausdorff_number, monitor);
-
-  check_gap(background, outline);
 
   watch.phase("size");
   MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));

@@ -66,7 +66,7 @@ def _background(rng, geometry):
     low, high = geometry.points.min(axis=0), geometry.points.max(axis=0)
     points, cells = grid(*rng.integers(1, 12, size=2))
     points, cells = compacted(points, cells)
-    margin = rng.choice([0.1, 0.0, -0.1]) * (high - low)
+    margin = rng.choice([0.1, 0.0, -0.02]) * (high - low)
     return Mesh(points=(low - margin) + points * (high - low + 2 * margin), cells=cells)
 
 

@@ -142,7 +142,8 @@ def print_table(rows):
             f"{kind:18}{len(members):7}{bad:6}{refused:9}{certified:11.1%}{stars:10.2%}"
             f"{slowest:7.2f}"
         )
-    for name, key in (("reason", "reason"), ("refusal", "error"), ("not generated", "skipped")):
+    kinds = {"reason": "reason", "refusal": "error"}
+    for name, key in {**kinds, "not generated": "skipped"}.items():
         texts = (re.sub(r"[-+\d.][-+\d.e]*", "#", row.get(key, "")) for row in rows)
         for text, count in Counter(filter(None, texts)).most_common(8):
             say(f"{name}: {count} x {text}")

@@ -154,5 +154,34 @@ def test_the_inside_is_refined_beside_frozen_edges():
 
 def test_a_budget_that_the_curves_exceed_is_refused_with_the_place():
     mesh = square(4)
-    with pytest.raises(anistar.MeshingError, match=r"edges on the curve with tag .* near \("):
+    with pytest.raises(anistar.MeshingError, match=r"edges on a curve with tag .* near \("):
         anistar.remesh(mesh, sizes(mesh, 1e-3), RemeshOptions(max_vertices=100))
+
+
+def test_a_projection_never_makes_a_thin_ring_cross_itself():
+    # chords that had retreated to the polyline were still projected, and crossed again
+    thickness, n = 0.005347, 8
+    radii = {1: 1 - thickness, 2: 1.0}
+
+    def to_plane(u, v):
+        radius = 1 - thickness + thickness * v
+        return radius * np.cos(2 * np.pi * u), radius * np.sin(2 * np.pi * u)
+
+    def project(points, tag):
+        return radii[tag] * points / np.linalg.norm(points, axis=1)[:, None]
+
+    base = mapped(to_plane, n, 2, closed=True)
+    outer = np.linalg.norm(base.points[base.facets], axis=2).mean(axis=1) > 1 - thickness / 2
+    mesh = Mesh(**{**base.arrays(), "facet_tags": np.where(outer, 2, 1)})
+    h = 10 ** np.random.default_rng(2).uniform(-2, 0, mesh.n_points)
+    options = RemeshOptions(ridge_angle=80.0, max_vertices=2000)
+    done = anistar.remesh(mesh, np.eye(2) / h[:, None, None] ** 2, options, project=project)
+    assert anistar.validate(done.mesh) == []
+
+
+def test_a_mesh_is_never_refused_as_its_own_geometry():
+    # a curve bulges from a coarse polygon by more than a tenth of the extent of the mesh
+    points = [[0.0, -1.5], [1.1, -0.078], [1.0, 0.0], [-1.0, 0.0], [-1.1, -0.078]]
+    mesh = Mesh(points=points, cells=[[0, 1, 2], [0, 2, 3], [0, 3, 4]])
+    done = anistar.remesh(mesh, sizes(mesh, 0.1))
+    assert anistar.validate(done.mesh) == []
