@@ -51,7 +51,7 @@ class RemeshReport:
         ``inconsistency``, ``boundary``), ``rounds`` and ``stop_reason``.
     simplex_ok, star_ok : float or None
         Certified fractions of the cells and of the stars (see `certify`); None when the
-        agreement phase was off.
+        agreement phase was off or a budget had stopped the run.
     distortion : dict of str to float
         Quantiles of ln gamma, the distortion of the metric along the edges.
     tags : tuple of TagMeasure

@@ -107,6 +107,11 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
     out.agreement = "off";
     return;
   }
+  if (monitor.reason() != StopReason::finished) {
+    // the cells of a mesh that is not refined can reach across the whole domain
+    out.agreement = std::string("skipped: stopped by ") + name_of(monitor.reason());
+    return;
+  }
   const bool agreeing =
       !is_pure && (settings.agreement == AgreementMode::on ||
                    (settings.agreement == AgreementMode::when_possible && can_agree));

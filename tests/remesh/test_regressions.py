@@ -154,7 +154,7 @@ def test_the_inside_is_refined_beside_frozen_edges():
 
 def test_a_budget_that_the_curves_exceed_is_refused_with_the_place():
     mesh = square(4)
-    with pytest.raises(anistar.MeshingError, match=r"edges on a curve with tag .* near \("):
+    with pytest.raises(anistar.MeshingError, match=r"edges on the curve with tag .* near \("):
         anistar.remesh(mesh, sizes(mesh, 1e-3), RemeshOptions(max_vertices=100))
 
 
