@@ -85,32 +85,24 @@ template <std::size_t d> void Cavity<d>::connect(const Port &port) {
 
 template <std::size_t d>
 void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
-  struct Outer {
-    Cell<d> cell;
-    std::size_t facet;
-    HalfFacet beyond;
-    Index constraint, region;
-  };
-  static thread_local std::vector<Outer> outers;
-  static thread_local std::vector<Outer> walls;
   const auto outer_of = [&](HalfFacet h) {
     return Outer{mesh_.at(h.cell()), h.facet(), mesh_.opposite(h), mesh_.constraint(h),
                  mesh_.region[static_cast<std::size_t>(h.cell())]};
   };
-  outers.clear();
-  walls.clear();
+  outers_.clear();
+  walls_.clear();
   for (HalfFacet h : facets_)
-    outers.push_back(outer_of(h));
+    outers_.push_back(outer_of(h));
   for (HalfFacet h : at_apex_)
-    walls.push_back(outer_of(h));
+    walls_.push_back(outer_of(h));
   // the new cells take the places of the old ones: a swap touches nothing else
-  for (std::size_t k = cells_.size(); k-- > outers.size();)
+  for (std::size_t k = cells_.size(); k-- > outers_.size();)
     mesh_.free_cell(cells_[k]);
 
   star_.clear();
   ports_.clear();
-  for (std::size_t k = 0; k < outers.size(); ++k) {
-    const Outer &outer = outers[k];
+  for (std::size_t k = 0; k < outers_.size(); ++k) {
+    const Outer &outer = outers_[k];
     const Index c = k < cells_.size() ? cells_[k] : mesh_.add_cell();
     mesh_.at(c) = outer.cell;
     mesh_.at(c)[outer.facet] = apex;
@@ -135,7 +127,7 @@ void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
         mesh_.set_constraint(HalfFacet(base.cell(), j), constraint);
         connect({ridge, HalfFacet(base.cell(), j), constraint});
       }
-  for (const Outer &wall : walls) {
+  for (const Outer &wall : walls_) {
     std::size_t a = 0;
     while (wall.cell[a] != apex)
       ++a;

@@ -67,6 +67,13 @@ private:
     Index constraint;
   };
 
+  struct Outer { ///< a facet of the cavity's boundary, kept while its cell is replaced
+    Cell<d> cell;
+    std::size_t facet;
+    HalfFacet beyond;
+    Index constraint, region;
+  };
+
   Triangulation<d> &mesh_;
   std::vector<std::uint32_t> stamp_;
   std::uint32_t epoch_ = 0;
@@ -74,6 +81,7 @@ private:
   std::vector<HalfFacet> facets_;  ///< as seen from the cavity
   std::vector<HalfFacet> at_apex_; ///< boundary facets that contain the apex
   std::vector<HalfFacet> star_;
+  std::vector<Outer> outers_, walls_;
   std::vector<Port> ports_;
 
   void connect(const Port &port);

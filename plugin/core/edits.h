@@ -50,9 +50,7 @@ struct Walk {
 /// vertex, none when the edge is frozen or the curve cannot be followed validly.
 [[nodiscard]] Index split_edge(Workspace &w, HalfFacet edge);
 
-/// Bounds w.cavity for the removal of v into its neighbour `target`.
-/// @returns false when that is not valid: v is a corner, leaves its curve, or a cell
-/// would be inverted. `ridge` gets the constraint of the edge that closes the curve.
+/// The removal of a vertex into its neighbour, and what that means for its curve.
 struct Collapse {
   Index vertex, target;
   std::vector<HalfFacet> star;            ///< scratch
@@ -61,7 +59,12 @@ struct Collapse {
   CurveEdge merged{};                     ///< valid when ridges is not empty
   std::array<Index, 2> halves{};          ///< the curve edges that merge
 };
+
+/// Bounds w.cavity for collapse.vertex and collapse.target, and fills in the rest.
+/// @returns false when that is not valid: the vertex is a corner or leaves its curve, a
+/// cell would be inverted, or the boundary would run into another part of it.
 [[nodiscard]] bool bound_collapse(Workspace &w, Collapse &collapse);
+/// Carries the collapse out. @pre bound_collapse was true and nothing changed since.
 void fill_collapse(Workspace &w, Collapse &collapse);
 
 /// Sorts the mesh along a Hilbert curve and tells the curve edges.

@@ -17,8 +17,10 @@ enum class Target {
 /// valid, takes the metric of its new place, and its edges are legalised. Vertices on a
 /// curve slide along it.
 ///
-/// Blocks of the Hilbert order are swept side by side, then the vertices between blocks
-/// in order; the blocks do not depend on the number of threads, nor does the result.
+/// Blocks of the Hilbert order are swept side by side, then in order what concerns more
+/// than one block: the vertices between them, and those on curves, which must not run
+/// into another part of the boundary. The blocks do not depend on the number of
+/// threads, nor does the result.
 void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
             int threads);
 

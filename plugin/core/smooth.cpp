@@ -89,6 +89,10 @@ private:
   }
 };
 
+bool is_on_curve(const Triangulation<2> &mesh, Index v) {
+  return mesh.feature[static_cast<std::size_t>(v)] == 1;
+}
+
 } // namespace
 
 void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
@@ -107,7 +111,7 @@ void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
                               static_cast<Index>(n * (block + 1) / n_blocks)};
       own.restrict_to(range);
       for (Index v = range.first; v < range.last; ++v)
-        if (w.mesh.is_used(v) && !smoother.visit(v, range))
+        if (w.mesh.is_used(v) && (is_on_curve(w.mesh, v) || !smoother.visit(v, range)))
           between[block].push_back(v);
     }
     const std::lock_guard lock(counting);

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from meshes import square
+from meshes import annulus, square
 
 import anistar
 from anistar.consistency import ConsistencyOptions
@@ -125,8 +125,9 @@ def test_a_hopeless_metric_ends_by_a_bound_with_a_valid_mesh():
 
 
 @pytest.mark.parametrize("threads", [2, 3])
-def test_the_bytes_do_not_depend_on_the_number_of_threads(threads):
-    mesh = square(150)
+@pytest.mark.parametrize("make", [lambda: square(150), lambda: annulus(30)])
+def test_the_bytes_do_not_depend_on_the_number_of_threads(make, threads):
+    mesh = make()
     M = layered(mesh, complexity=20000.0)
     one, many = (remesh(mesh, M, RemeshOptions(threads=n)) for n in (1, threads))
     assert one.mesh.points.tobytes() == many.mesh.points.tobytes()
