@@ -86,7 +86,7 @@ def test_the_report_is_json():
 
 def test_the_interpolation_error_of_a_tanh_layer_falls_like_the_complexity():
     # C^-1 is the optimum for P1 elements in L2.
-    complexities, errors = (1000, 3000, 9000), []
+    complexities, errors = (2000, 6000, 18000), []  # below that gradation still costs
     mesh = square(20)
     for complexity in complexities:
         for _ in range(3):
@@ -97,7 +97,7 @@ def test_the_interpolation_error_of_a_tanh_layer_falls_like_the_complexity():
         assert validate(mesh) == []
         errors.append(l2_error(mesh, layer(mesh.points), layer))
     rate = -np.polyfit(np.log(complexities), np.log(errors), 1)[0]
-    assert rate == pytest.approx(1.0, abs=0.06)
+    assert rate == pytest.approx(1.0, abs=0.05)
 
 
 class TestBadInput:
