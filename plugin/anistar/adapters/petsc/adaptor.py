@@ -39,7 +39,7 @@ def register(name: str = "anistar", *, remesh_options: RemeshOptions | None = No
     labels of the old one, on all strata. Its curved boundaries are resampled on a smooth curve
     through the points of the old.
 
-    Of the options of the DM, ``gradation_factor`` grades the metric (-1: off).
+    Of the options of the DM, ``gradation_factor`` grades the metric (1 or less: off).
     ``target_complexity``, ``p``, ``h_min``, ``h_max`` and ``a_max`` belong to `metricNormalize`
     and `metricEnforceSPD`, which the caller has called already; ``hausdorff_number`` is a length
     in PETSc, where `RemeshOptions` has a relative one. ``no_insert``, ``no_swap``, ``no_move``
@@ -112,7 +112,7 @@ def _remeshed(plex: Any, metric: Any, options: RemeshOptions) -> tuple[Mesh, Ple
     mesh, labels = read_plex(plex)
     tensors = metric_from_vec(plex, metric)
     factor = plex.metricGetGradationFactor()
-    if factor > 0:
+    if factor > 1:
         tensors = graded(mesh, tensors, factor=factor)
     return remesh(mesh, tensors, options).mesh, labels
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 with contextlib.suppress(ImportError):
     importlib.import_module("dolfinx_solver")
 try:
-    from petsc4py import PETSc
+    from petsc4py import PETSc as PETSc
 except ImportError as error:
     error.add_note(
         "anistar's PETSc adapter needs petsc4py: pip install 'anistar[dolfinx]' or 'anistar[petsc]'"

@@ -130,7 +130,7 @@ def _tagged(
         arrays[f"{kind}_tags"] = tags[chosen]
         if k < dim:
             arrays[f"{kind}s"] = parts.vertices[k][chosen]
-    corners = np.flatnonzero(found.carried[0].any(axis=1))
+    corners = np.flatnonzero(found.carried[0].any(axis=1)).astype(np.int32)
     at = {
         tuple(map(float, points[c])): tuple(
             found.pairs[i] for i in np.flatnonzero(found.carried[0][c])

@@ -88,9 +88,8 @@ def strata(plex: Any) -> Strata:
 
 
 def _refuse_other_than_simplices(plex: Any, dim: int, span: Long) -> None:
-    label = plex.getLabel("celltype")
     simplex = {2: 3, 3: 6}[dim]  # DM_POLYTOPE_TRIANGLE, DM_POLYTOPE_TETRAHEDRON
-    if label.getStratumSize(simplex) != span[1] - span[0]:
+    if plex.getStratumSize("celltype", simplex) != span[1] - span[0]:
         kind = {2: "triangles", 3: "tetrahedra"}[dim]
         raise TypeError(f"the DMPlex has {dim}-dimensional points other than {kind}")
 
