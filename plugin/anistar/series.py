@@ -42,22 +42,38 @@ def write_series(path: str | os.PathLike[str], items: Iterable[Item]) -> list[Pa
         If `path` does not end in .pvd.
     """
     index = Path(path)
-    if index.suffix != ".pvd":
-        raise ValueError(f"a series is written to a .pvd file, not {index.name!r}")
+    _require_pvd(index)
     written: list[Path] = []
     for number, (mesh, fields) in enumerate(items):
-        member = index.with_name(f"{index.stem}_{number:03d}.vtu")
-        write(member, mesh, fields)
-        written.append(member)
-    _remove_stale(index, keep=len(written))
+        written.append(member(index, number))
+        write(written[-1], mesh, fields)
+    return [*written, write_index(index, len(written))]
+
+
+def member(path: str | os.PathLike[str], number: int) -> Path:
+    """Return the path of one mesh of the series that a PVD file lists."""
+    index = Path(path)
+    return index.with_name(f"{index.stem}_{number:03d}.vtu")
+
+
+def write_index(path: str | os.PathLike[str], count: int) -> Path:
+    """Write the PVD file of a series of `count` meshes, and remove members beyond them."""
+    index = Path(path)
+    _require_pvd(index)
+    _remove_stale(index, keep=count)
     lines = [
-        f"    <DataSet timestep={quoteattr(str(time))} file={quoteattr(member.name)}/>"
-        for time, member in enumerate(written)
+        f"    <DataSet timestep={quoteattr(str(i))} file={quoteattr(member(index, i).name)}/>"
+        for i in range(count)
     ]
     header = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">']
     text = "\n".join([*header, "  <Collection>", *lines, "  </Collection>", "</VTKFile>", ""])
     write_text(index, text)
-    return [*written, index]
+    return index
+
+
+def _require_pvd(index: Path) -> None:
+    if index.suffix != ".pvd":
+        raise ValueError(f"a series is written to a .pvd file, not {index.name!r}")
 
 
 def _remove_stale(index: Path, keep: int) -> None:

@@ -15,7 +15,7 @@ from ..errors import FormatError
 from ..fields import Field, as_fields
 from ..mesh import Mesh
 from ..topology import Float
-from . import gmf, gmsh, medit, meshio_guard, vtu
+from . import gmf, gmsh, medit, meshio_guard, su2, vtu
 from .assembly import ReadReport, assembled
 from .atomic import replaced
 from .export import exported
@@ -46,6 +46,7 @@ _WRITERS: dict[str, Callable[[Path, Mesh, Mapping[str, Field]], None]] = {
     ".mesh": medit.write_mesh,
     ".meshb": medit.write_mesh,
     ".msh": gmsh.write,
+    ".su2": su2.write,
     ".vtu": vtu.write,
 }
 METRIC = "metric"
