@@ -13,6 +13,7 @@ from .metric import MetricError, MetricOptions
 from .remesh import Remeshed, RemeshOptions, remesh
 from .study import Study, convergence_study
 from .transfer import TransferOptions, Transferred, transfer
+from .unsteady import UnsteadyOptions, needs_adaptation, unsteady_loop
 from .validation import Violation, validate
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "Study",
     "TransferOptions",
     "Transferred",
+    "UnsteadyOptions",
     "Violation",
     "adapt",
     "adapt_loop",
@@ -43,9 +45,11 @@ __all__ = [
     "convergence_study",
     "explain_star",
     "metric",
+    "needs_adaptation",
     "read",
     "remesh",
     "transfer",
+    "unsteady_loop",
     "validate",
     "write",
 ]

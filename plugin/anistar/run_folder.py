@@ -61,7 +61,7 @@ class RunFolder:
         number = len(self.steps)
         write(member(self.folder / SERIES, number), step.mesh, step.fields)
         self.steps.append(step)
-        write_index(self.folder / SERIES, len(self.steps))
+        write_index(self.folder / SERIES, range(len(self.steps)))
         self._report(Loop(tuple(self.steps), RUNNING))
 
     def close(self, loop: Loop) -> None:
