@@ -6,6 +6,7 @@ from .measure import integral
 from .nodes import node_positions
 from .operators import transfer_operator
 from .options import METHODS, OUTSIDE, Outside, TransferOptions
+from .quadrature import transfer_quadrature
 from .report import Coverage, FieldChange, TransferReport
 from .transfer import Transferred, as_given, transfer
 
@@ -26,4 +27,5 @@ __all__ = [
     "supermesh",
     "transfer",
     "transfer_operator",
+    "transfer_quadrature",
 ]

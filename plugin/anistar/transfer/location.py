@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,8 @@ class Places:
         Source cell of each point.
     weights : (q, d + 1) float64
         Barycentric coordinates there, none negative.
+    inside : (q,) bool
+        In the cell itself.
     outside : (q,) bool
         Farther from the source than the tolerance.
     max_distance : float
@@ -38,6 +40,7 @@ class Places:
 
     cells: Int
     weights: Float
+    inside: Bool
     outside: Bool
     max_distance: float
 
@@ -58,7 +61,7 @@ def located_points(source: Mesh, target: Mesh, options: TransferOptions) -> Plac
 def located_nodes(
     source: Mesh, target: Mesh, regions: Regions, count: int, options: TransferOptions
 ) -> Places:
-    """Locate nodes of the target's cells, each in the region of its cell.
+    """Locate nodes of the target's cells, each in the region and on the side of its cell.
 
     Parameters
     ----------
@@ -72,28 +75,46 @@ def located_nodes(
         What to do outside.
     """
     dim = target.dim
-    coordinates = node_coordinates(dim, count) if count > 1 else np.full((1, dim + 1), 1 / (dim + 1))
-    corners = target.points[target.cells]
-    nodes = np.einsum("kj,mjd->mkd", coordinates, corners)
-    pulled = nodes + INWARD * (corners.mean(axis=1)[:, None] - nodes) if count > 1 else nodes
+    if count == 1:
+        centroid = np.full((1, dim + 1), 1 / (dim + 1))
+        return located_coordinates(source, target, regions, centroid, options)
+    nodes = node_coordinates(dim, count)
+    pulled = nodes + INWARD * (1 / (dim + 1) - nodes)
+    near = located_coordinates(source, target, regions, pulled, options)
+    positions = np.einsum("kj,mjd->mkd", nodes, target.points[target.cells]).reshape(-1, dim)
+    # Points beyond the boundary keep the weights of the nearest point of the source.
+    at = np.where(near.inside[:, None], barycentric(source, near.cells, positions), near.weights)
+    return replace(near, weights=_convex(at))
+
+
+def located_coordinates(
+    source: Mesh, target: Mesh, regions: Regions, coordinates: Float, options: TransferOptions
+) -> Places:
+    """Locate the points with the given (k, d + 1) barycentric coordinates in every cell."""
+    dim, count = target.dim, len(coordinates)
+    queries = np.einsum("kj,mjd->mkd", coordinates, target.points[target.cells])
     cells = np.empty((target.n_cells, count), np.int32)
     weights = np.empty((target.n_cells, count, dim + 1))
     distance = np.empty((target.n_cells, count))
     for region in range(regions.count):
         sources = np.flatnonzero(regions.source == region).astype(np.int32)
         targets = np.flatnonzero(regions.target == region)
-        queries = np.ascontiguousarray(pulled[targets].reshape(-1, dim))
-        found, at, away = locator(source, sources).locate(queries)
+        found, at, away = locator(source, sources).locate(
+            np.ascontiguousarray(queries[targets].reshape(-1, dim))
+        )
         cells[targets] = sources[found].reshape(-1, count)
         weights[targets] = at.reshape(-1, count, dim + 1)
         distance[targets] = away.reshape(-1, count)
-    flat = nodes.reshape(-1, dim)
-    cells, weights = cells.ravel(), weights.reshape(-1, dim + 1)
-    if count > 1:
-        inside = distance.ravel() == 0
-        weights[inside] = barycentric(source, cells[inside], flat[inside])
-    what = "the centroid of cell" if count == 1 else "a node of cell"
-    return _places(source, flat, cells, weights, distance.ravel(), what, options, count)
+    return _places(
+        source,
+        queries.reshape(-1, dim),
+        cells.ravel(),
+        weights.reshape(-1, dim + 1),
+        distance.ravel(),
+        "a point of cell",
+        options,
+        count,
+    )
 
 
 def barycentric(mesh: Mesh, cells: Int, points: Float) -> Float:
@@ -130,7 +151,12 @@ def _places(
             f"source mesh (allowed {allowed:.3g}); {int(outside.sum())} such: "
             "give outside='nearest' or 'nan'"
         )
-    # Round-off leaves weights like -1e-17: clipped, so that values keep within their bounds.
-    weights = np.maximum(weights, 0.0)
-    weights /= weights.sum(axis=1, keepdims=True)
-    return Places(cells, weights, outside, float(distance.max(initial=0.0)))
+    return Places(
+        cells, _convex(weights), distance == 0, outside, float(distance.max(initial=0.0))
+    )
+
+
+def _convex(weights: Float) -> Float:
+    """Clip what round-off left negative, so that values keep within their bounds."""
+    positive = np.maximum(weights, 0.0)
+    return np.asarray(positive / positive.sum(axis=1, keepdims=True))
