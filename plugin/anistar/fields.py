@@ -60,8 +60,7 @@ class Field:
         rank = _RANK[kind] + (self.on == "cell_nodes")
         if values.ndim != rank:
             raise ValueError(
-                f"a {kind} field needs an array of {rank} dimension(s), "
-                f"not shape {values.shape}"
+                f"a {kind} field needs an array of {rank} dimension(s), not shape {values.shape}"
             )
         if kind == "label" and self.on == "cell_nodes":
             raise ValueError("a label lives on points or cells, not on cell_nodes")
@@ -127,7 +126,7 @@ def _check_shape(name: str, field: Field, mesh: Mesh) -> None:
         )
     components = field.values.shape[1:]
     if field.on == "cell_nodes":
-        n_nodes, *components = components
+        n_nodes, components = components[0], components[1:]
         allowed = (mesh.dim + 1, (mesh.dim + 1) * (mesh.dim + 2) // 2)
         if n_nodes not in allowed:
             raise ValueError(

@@ -39,11 +39,10 @@ def local_bounds(projector: Projector, columns: Float, on: str) -> Bounds:
     overlap = projector.overlap
     source, target = overlap.source, overlap.target
     width = source.dim + 1
-    by_cell = {
-        "points": lambda: columns[source.cells],
-        "cells": lambda: columns[:, None, :],
-        "cell_nodes": lambda: columns.reshape(source.n_cells, width, -1),
-    }[on]()
+    if on == "points":
+        by_cell = columns[source.cells]
+    else:
+        by_cell = columns.reshape(source.n_cells, 1 if on == "cells" else width, -1)
     starts, pairs = overlap.cells.indptr[:-1], overlap.cells.indices
     low = _reduced(np.minimum, by_cell.min(axis=1), pairs, starts)
     high = _reduced(np.maximum, by_cell.max(axis=1), pairs, starts)

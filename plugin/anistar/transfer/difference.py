@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from ..fields import Field
 from ..mesh import Mesh
 from ..topology import Float, cell_volumes
 from .columns import as_columns
-from .intersection import Supermesh
+from .intersection import Sparse, Supermesh
 
 
 def l2_difference(overlap: Supermesh, before: Field, after: Field) -> list[float] | None:
@@ -19,7 +18,7 @@ def l2_difference(overlap: Supermesh, before: Field, after: Field) -> list[float
     difference is known to the round-off of the squares: the norm to about 1e-8 of that of the
     field. Quadratic fields have no such matrix, and give None.
     """
-    mixed: csr_array | None = {
+    mixed: Sparse | None = {
         "points": overlap.points,
         "cells": overlap.cells,
         "cell_nodes": overlap.blocks,

@@ -19,6 +19,7 @@ from .report import Coverage
 # ratio of 1e6.
 SAME_DOMAIN = 1e-9
 
+Sparse = csr_array | bsr_array
 Progress = Callable[[str, float], object]
 
 

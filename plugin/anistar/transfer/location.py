@@ -151,9 +151,7 @@ def _places(
             f"source mesh (allowed {allowed:.3g}); {int(outside.sum())} such: "
             "give outside='nearest' or 'nan'"
         )
-    return Places(
-        cells, _convex(weights), distance == 0, outside, float(distance.max(initial=0.0))
-    )
+    return Places(cells, _convex(weights), distance == 0, outside, float(distance.max(initial=0.0)))
 
 
 def _convex(weights: Float) -> Float:

@@ -12,7 +12,7 @@ from scipy.sparse.linalg import LinearOperator, cg
 
 from ..errors import MeshingError
 from ..mesh import Mesh
-from ..topology import Float, cell_volumes
+from ..topology import Float, Int, cell_volumes
 
 # Scaled by its diagonal the mass matrix has a condition number of at most d + 2 on any mesh
 # (Wathen, Realistic eigenvalue bounds for the Galerkin mass matrix, IMA J. Numer. Anal. 7
@@ -37,7 +37,7 @@ class Mass:
         Sums of the rows.
     """
 
-    edges: Float
+    edges: Int
     between: Float
     lumped: Float
 
@@ -102,7 +102,7 @@ def mass(mesh: Mesh) -> Mass:
         (np.tile(share, len(pairs)), (np.minimum(*ends), np.maximum(*ends))), shape=(n, n)
     )
     summed = upper.tocsr().tocoo()
-    return Mass(np.stack(summed.coords), summed.data, hat_integrals(mesh))
+    return Mass(np.stack(summed.coords).astype(np.int32), summed.data, hat_integrals(mesh))
 
 
 def hat_integrals(mesh: Mesh) -> Float:

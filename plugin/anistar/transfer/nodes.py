@@ -68,7 +68,7 @@ def node_basis(barycentric: Float, count: int) -> Float:
         return barycentric
     corners = barycentric * (2 * barycentric - 1)
     middles = [4 * barycentric[:, i] * barycentric[:, j] for i, j in edge_corners(dim)]
-    return np.concatenate([corners, np.stack(middles, axis=1)], axis=1)
+    return np.asarray(np.concatenate([corners, np.stack(middles, axis=1)], axis=1))
 
 
 def node_weights(dim: int, count: int) -> Float:
@@ -78,4 +78,4 @@ def node_weights(dim: int, count: int) -> Float:
     # The means of b_i^2 and b_i b_j are 2 and 1 over (d + 1) (d + 2).
     scale = (dim + 1) * (dim + 2)
     corner = 4 / scale - 1 / (dim + 1)
-    return np.r_[np.full(dim + 1, corner), np.full(count - dim - 1, 4 / scale)]
+    return np.repeat([corner, 4 / scale], [dim + 1, count - dim - 1])

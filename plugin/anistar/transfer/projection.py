@@ -11,7 +11,7 @@ from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
 from ..mesh import Mesh
 from ..topology import Float, Int, cell_volumes
-from .intersection import Supermesh
+from .intersection import Sparse, Supermesh
 from .mass import Mass, mass
 
 
@@ -61,7 +61,7 @@ class Projector:
         target = self.overlap.target
         return cell_volumes(target.points, target.cells)
 
-    def mixed(self, on: str) -> csr_array:
+    def mixed(self, on: str) -> Sparse:
         """Return the matrix of integrals of target basis functions times source ones."""
         matrix = {
             "points": self.overlap.points,

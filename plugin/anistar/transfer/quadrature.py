@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..mesh import Mesh
 from ..metric import check_metric, interpolated
-from ..topology import Float, Int
+from ..topology import Float, Int, Long
 from .location import Places, located_coordinates
 from .options import Outside, TransferOptions
 from .regions import common_regions
@@ -72,15 +72,13 @@ def transfer_quadrature(
         )
     tensors = _metric_at(target, wanted, metric)
     regions = common_regions(source, target)
-    places = located_coordinates(
-        source, target, regions, wanted, TransferOptions(outside=outside)
-    )
+    places = located_coordinates(source, target, regions, wanted, TransferOptions(outside=outside))
     points = np.einsum("qk,mkd->mqd", given, source.points[source.cells])
     queries = np.einsum("qk,mkd->mqd", wanted, target.points[target.cells])
     chosen = np.empty(target.n_cells * len(wanted), dtype=np.int64)
     for region in range(regions.count):
-        rows = np.flatnonzero(np.repeat(regions.target == region, len(wanted)))
-        cells = np.flatnonzero(regions.source == region)
+        rows = np.flatnonzero(np.repeat(regions.target == region, len(wanted))).astype(np.int64)
+        cells = np.flatnonzero(regions.source == region).astype(np.int64)
         within = _nearest_in_region(
             points[cells], cells, queries.reshape(-1, source.dim)[rows], tensors[rows], places, rows
         )
@@ -113,7 +111,7 @@ def _metric_at(target: Mesh, rule: Float, metric: ArrayLike | None) -> Float:
 
 
 def _nearest_in_region(
-    points: Float, cells: Int, queries: Float, tensors: Float, places: Places, rows: Int
+    points: Float, cells: Long, queries: Float, tensors: Float, places: Places, rows: Long
 ) -> Int:
     """Return the index among the flat points of the one nearest to each query."""
     number = np.searchsorted(cells, places.cells[rows])
@@ -121,9 +119,11 @@ def _nearest_in_region(
     distance = np.einsum("nqi,nij,nqj->nq", offset, tensors, offset)
     seeds = number * points.shape[1] + np.argmin(distance, axis=1)
     nearest = _core.nearest_in_metric2 if points.shape[2] == 2 else _core.nearest_in_metric3
-    return nearest(
-        np.ascontiguousarray(points.reshape(-1, points.shape[2])),
-        np.ascontiguousarray(queries),
-        np.ascontiguousarray(tensors),
-        seeds.astype(np.int32),
+    return np.asarray(
+        nearest(
+            np.ascontiguousarray(points.reshape(-1, points.shape[2])),
+            np.ascontiguousarray(queries),
+            np.ascontiguousarray(tensors),
+            seeds.astype(np.int32),
+        )
     )

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.sparse import csr_array
 
 from ..fields import Field, as_fields
 from ..mesh import Mesh
@@ -167,9 +168,7 @@ def _intersected(
     )
 
 
-def _require_projectable(
-    name: str, field: Field, source: Mesh, options: TransferOptions
-) -> None:
+def _require_projectable(name: str, field: Field, source: Mesh, options: TransferOptions) -> None:
     if field.on == "cell_nodes" and field.values.shape[1] != source.dim + 1:
         raise ValueError(
             f"field {name!r} is quadratic: the {options.method} method carries linear and "
@@ -184,7 +183,7 @@ def _require_projectable(
 
 def _project(projector: Projector, field: Field, options: TransferOptions) -> Field:
     if field.kind == "label":
-        return replace(field, values=majority(projector.mixed(field.on), field.values))
+        return replace(field, values=majority(csr_array(projector.mixed(field.on)), field.values))
     columns = as_columns(field, logarithmic=options.log_euclidean)
     project = bounded if options.method == "bounded" else Projector.projected
     return from_columns(
