@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -33,6 +34,11 @@ def as_columns(field: Field, *, logarithmic: bool) -> Float:
         values = _by_rows(log_metric, values)
     rows = values.shape[0] if field.on != "cell_nodes" else values.shape[0] * values.shape[1]
     return np.ascontiguousarray(values.reshape(rows, -1), dtype=np.float64)
+
+
+def power_of_two(columns: Float) -> float:
+    """Return a scale that keeps squares of the values in range and changes no digit of them."""
+    return float(2.0 ** math.frexp(float(np.abs(columns).max(initial=0.0)))[1])
 
 
 def from_columns(columns: Float, like: Field, *, logarithmic: bool) -> Field:

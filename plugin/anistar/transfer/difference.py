@@ -7,7 +7,7 @@ import numpy as np
 from ..fields import Field
 from ..mesh import Mesh
 from ..topology import Float, cell_volumes
-from .columns import as_columns
+from .columns import as_columns, power_of_two
 from .intersection import Sparse, Supermesh
 
 
@@ -28,12 +28,12 @@ def l2_difference(overlap: Supermesh, before: Field, after: Field) -> list[float
         return None
     old, new = as_columns(before, logarithmic=False), as_columns(after, logarithmic=False)
     # About a mean, because a constant part would only add round-off.
-    shift = old.mean(axis=0)
-    old, new = old - shift, new - shift
+    scale, shift = power_of_two(old), old.mean(axis=0)
+    old, new = (old - shift) / scale, (new - shift) / scale
     square = _squares(overlap.source, old, before.on, overlap.covered)
     square += _squares(overlap.target, new, before.on, None)
     square -= 2 * (new * (mixed @ old)).sum(axis=0)
-    return [float(value) for value in np.sqrt(np.maximum(square, 0.0))]
+    return [scale * float(value) for value in np.sqrt(np.maximum(square, 0.0))]
 
 
 def _squares(mesh: Mesh, columns: Float, on: str, covered: Float | None) -> Float:

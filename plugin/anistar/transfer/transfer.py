@@ -15,7 +15,7 @@ from ..fields import Field, as_fields
 from ..mesh import Mesh
 from ..options import require
 from .bounded import bounded
-from .columns import as_columns, from_columns
+from .columns import as_columns, from_columns, power_of_two
 from .coverage import require_covered
 from .difference import l2_difference
 from .interpolation import Interpolator
@@ -186,9 +186,9 @@ def _project(projector: Projector, field: Field, options: TransferOptions) -> Fi
         return replace(field, values=majority(csr_array(projector.mixed(field.on)), field.values))
     columns = as_columns(field, logarithmic=options.log_euclidean)
     project = bounded if options.method == "bounded" else Projector.projected
-    return from_columns(
-        project(projector, columns, field.on), field, logarithmic=options.log_euclidean
-    )
+    scale = power_of_two(columns)
+    carried = scale * project(projector, columns / scale, field.on)
+    return from_columns(carried, field, logarithmic=options.log_euclidean)
 
 
 def _change(
