@@ -74,18 +74,20 @@ def bounded(projector: Projector, columns: Float, on: str) -> Float:
     P0 values are means, which lie within their bounds. P1 values in each cell are drawn towards
     the mean of the cell [3]. Continuous P1 values are the lumped projection, a mean of source
     values, plus as much of the fluxes that lead from there to the L2 projection as the bounds
-    admit [1, 2]; what was cut is offered again until nothing more fits. What then remains of
+    admit [1, 2, 4]; what was cut is offered again until nothing more fits. What then remains of
     the integral of a region is spread over its inner values in proportion to their room.
 
     References
     ----------
-    [1] D. Kuzmin, R. Loehner, S. Turek (eds.), Flux-Corrected Transport, 2nd ed., Springer 2012,
-        ch. 6, sections 3.3 and 5.
+    [1] D. Kuzmin, M. Moeller, J. N. Shadid, M. Shashkov, Failsafe flux limiting and constrained
+        data projections for equations of gas dynamics, J. Comput. Phys. 229 (2010).
     [2] P. E. Farrell, M. D. Piggott, C. C. Pain, G. J. Gorman, C. R. Wilson, Conservative
         interpolation between unstructured meshes via supermesh construction, Comput. Methods
-        Appl. Mech. Engrg. 198 (2009), section 4.
+        Appl. Mech. Engrg. 198 (2009).
     [3] X. Zhang, C.-W. Shu, On maximum-principle-satisfying high order schemes for scalar
-        conservation laws, J. Comput. Phys. 229 (2010), equation (2.5).
+        conservation laws, J. Comput. Phys. 229 (2010).
+    [4] S. T. Zalesak, Fully multidimensional flux-corrected transport algorithms for fluids,
+        J. Comput. Phys. 31 (1979).
     """
     bounds = local_bounds(projector, columns, on)
     high_order = projector.projected(columns, on)
@@ -148,7 +150,7 @@ def _flux_corrected(projector: Projector, low: Float, high: Float, bounds: Bound
 def _limited(
     flux: Float, ends: tuple[Int, Int], values: Float, lumped: Float, bounds: Bounds
 ) -> Float:
-    """Return what fits of the fluxes from the second to the first end (Zalesak's limiter)."""
+    """Return what fits of the fluxes from the second to the first end, by Zalesak's limiter."""
     i, j = ends
     n = len(values)
     gain, loss = np.maximum(flux, 0.0), np.minimum(flux, 0.0)

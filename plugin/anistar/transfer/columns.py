@@ -26,7 +26,7 @@ def as_columns(field: Field, *, logarithmic: bool) -> Float:
     References
     ----------
     [1] V. Arsigny, P. Fillard, X. Pennec, N. Ayache, Log-Euclidean metrics for fast and simple
-        calculus on diffusion tensors, Magn. Reson. Med. 56 (2006).
+        calculus on diffusion tensors, Magnetic Resonance in Medicine 56 (2006).
     """
     values = field.values
     if logarithmic and field.kind == "tensor":

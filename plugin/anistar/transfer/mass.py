@@ -16,7 +16,7 @@ from ..topology import Float, Int, cell_volumes
 
 # Scaled by its diagonal the mass matrix has a condition number of at most d + 2 on any mesh
 # (Wathen, Realistic eigenvalue bounds for the Galerkin mass matrix, IMA J. Numer. Anal. 7
-# (1987), table 1), so that conjugate gradients reach round-off in about forty steps.
+# (1987)), so that conjugate gradients reach round-off in about forty steps.
 RESIDUAL = 1e-15
 MAX_STEPS = 200
 # What round-off may leave of the residual when the steps end.

@@ -44,7 +44,7 @@ class Projector:
     ----------
     [1] P. E. Farrell, M. D. Piggott, C. C. Pain, G. J. Gorman, C. R. Wilson, Conservative
         interpolation between unstructured meshes via supermesh construction, Comput. Methods
-        Appl. Mech. Engrg. 198 (2009), section 2.
+        Appl. Mech. Engrg. 198 (2009).
     """
 
     def __init__(self, overlap: Supermesh) -> None:
