@@ -12,7 +12,13 @@ from .mesh import Mesh
 from .metric import MetricError, MetricOptions
 from .remesh import Remeshed, RemeshOptions, remesh
 from .study import Study, convergence_study
-from .transfer import TransferOptions, Transferred, transfer
+from .transfer import (
+    TransferOptions,
+    Transferred,
+    transfer,
+    transfer_operator,
+    transfer_quadrature,
+)
 from .unsteady import UnsteadyOptions, needs_adaptation, unsteady_loop
 from .validation import Violation, validate
 
@@ -49,6 +55,8 @@ __all__ = [
     "read",
     "remesh",
     "transfer",
+    "transfer_operator",
+    "transfer_quadrature",
     "unsteady_loop",
     "validate",
     "write",

@@ -11,7 +11,13 @@ from ..loop import Loop, LoopError, LoopOptions, Step, adapt_loop
 from ..report import as_builtin
 from ..run_folder import RunFolder
 from . import console
-from .options import adapt_options, add_metric_options, add_remesh_options, numbers
+from .options import (
+    adapt_options,
+    add_metric_options,
+    add_remesh_options,
+    add_transfer_method_option,
+    numbers,
+)
 
 SUMMARY = "solve and adapt in turn, with a solver that is a command"
 EXAMPLE = (
@@ -43,6 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_metric_options(parser)
     add_remesh_options(parser)
+    add_transfer_method_option(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

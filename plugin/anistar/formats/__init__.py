@@ -111,6 +111,12 @@ def write(
     """
     path = Path(path)
     checked = as_fields(mesh, fields)
+    for name, field in checked.items():
+        if field.on == "cell_nodes":
+            raise FormatError(
+                f"cannot write {path}: field {name!r} lives at the nodes of cells, and files hold "
+                "values at points and in cells"
+            )
     if suffix_of(path) in _WRITERS:
         _WRITERS[suffix_of(path)](path, mesh, checked)
         return
