@@ -21,13 +21,18 @@ from .quality import UNIT, metric_lengths
 from .remesh import remesh
 from .report import attributes
 from .topology import unique_edges
-from .transfer import transfer
+from .transfer import TransferOptions, transfer
 
 Fields = dict[str, Any]
 Advance = Callable[[Mesh, Fields, float, float], Mapping[str, Field | ArrayLike]]
 """``advance(mesh, fields, begin, end)`` returns the fields at `end` from those at `begin`."""
 
 Initial = Mapping[str, Field | ArrayLike] | Callable[[Mesh], Mapping[str, Field | ArrayLike]]
+
+
+def _bounded_transfer() -> AdaptOptions:
+    # Hundreds of transfers add up: none may lose mass or make new extrema.
+    return AdaptOptions(transfer=TransferOptions(method="bounded", outside="nearest"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,6 +43,7 @@ class UnsteadyOptions:
     ----------
     adapt : AdaptOptions
         Of every stage; the target is that of one mesh, which serves all instants of a window.
+        The transfer is ``bounded`` by default.
     window : int
         Steps from one adaptation to the next.
     passes : int
@@ -53,7 +59,7 @@ class UnsteadyOptions:
         If a number is out of range.
     """
 
-    adapt: AdaptOptions = field(default_factory=AdaptOptions)
+    adapt: AdaptOptions = field(default_factory=_bounded_transfer)
     window: int = 8
     passes: int = 1
     unit_edges: float = 0.8

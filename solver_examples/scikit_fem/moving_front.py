@@ -81,7 +81,10 @@ def main(complexity=700, end=0.8, steps=160, refinements=4, output="series.pvd")
     writer = SeriesWriter(output)
     first = from_skfem(MeshTri.init_sqsymmetric().refined(3))
     options = anistar.UnsteadyOptions(
-        adapt=anistar.AdaptOptions.from_dict({"target_complexity": complexity}),
+        adapt=anistar.AdaptOptions(
+            metric=anistar.MetricOptions(target_complexity=complexity),
+            transfer=anistar.TransferOptions(method="bounded"),
+        ),
         window=16,
         passes=2,
     )
