@@ -102,7 +102,8 @@ template <std::size_t d> class Assembly {
 public:
   Assembly(const RegionMesh<d> &source, const RegionMesh<d> &target,
            const SupermeshSettings &settings, Monitor &monitor)
-      : source_(source), target_(target), settings_(settings), monitor_(monitor) {}
+      : source_(source), target_(target), settings_(settings), monitor_(monitor),
+        loads_(target.cells.size() * (d + 1) * settings.n_columns, 0.) {}
 
   Supermesh<d> run() {
     monitor_.enter("supermesh");
@@ -120,6 +121,7 @@ private:
   Monitor &monitor_;
   std::vector<Chunk<d>> chunks_;
   std::size_t n_done_ = 0;
+  std::vector<double> loads_; ///< every target cell is written by one thread only
 
   Region<d> region_of(Index region) const {
     std::vector<Index> sources, targets;
@@ -166,7 +168,7 @@ private:
   }
 
   Chunk<d> chunk(const Region<d> &region, std::size_t number, Overlay<d> &overlay,
-                 Compressor &compressor) const {
+                 Compressor &compressor) {
     Chunk<d> out;
     std::vector<RowEntry> entries;
     overlay.restart();
@@ -180,6 +182,7 @@ private:
         simplex[i] = target_.points[static_cast<std::size_t>(corners[i])];
       const Cover<d> &cover = overlay.cover(simplex);
       record(region, cell, cover, out);
+      add_loads(region, cell, cover);
       if (settings_.points)
         collect(region, corners, cover, entries, compressor);
     }
@@ -203,6 +206,20 @@ private:
       out.covered.push_back(is_fill ? 0 : overlap.volume);
       if (settings_.blocks)
         out.blocks.push_back(overlap.moments);
+    }
+  }
+
+  void add_loads(const Region<d> &region, Index cell, const Cover<d> &cover) {
+    const std::size_t width = settings_.n_columns;
+    double *load = loads_.data() + static_cast<std::size_t>(cell) * (d + 1) * width;
+    for (const Overlap<d> &overlap : cover.overlaps) {
+      const auto source = static_cast<std::size_t>(
+          region.sources[static_cast<std::size_t>(overlap.source)]);
+      const double *values = settings_.nodal.data() + source * (d + 1) * width;
+      for (std::size_t i = 0; i <= d; ++i)
+        for (std::size_t j = 0; j <= d; ++j)
+          for (std::size_t c = 0; c < width; ++c)
+            load[i * width + c] += overlap.moments[i][j] * values[j * width + c];
     }
   }
 
@@ -241,6 +258,7 @@ private:
       for (std::size_t p = 0; p < chunk.sources.size(); ++p)
         out.covered[static_cast<std::size_t>(chunk.sources[p])] += chunk.covered[p];
     }
+    out.loads = std::move(loads_);
     if (settings_.pairs)
       gather_pairs(out);
     if (settings_.points)

@@ -29,6 +29,10 @@ struct SupermeshSettings {
   bool points = true; ///< assemble the matrix between the points
   bool pairs = true;  ///< list the pairs of cells
   bool blocks = true; ///< keep the moments of every pair
+  /// Values at the corners of the source's cells, one row of `n_columns` for each;
+  /// their loads need no memory for the blocks.
+  std::span<const double> nodal = {};
+  std::size_t n_columns = 0;
   int threads = 1;
 };
 
@@ -39,6 +43,9 @@ template <std::size_t d> struct Supermesh {
   SparseRows pairs;
   /// One for each pair, in the order of `pairs`.
   std::vector<Moments<d>> blocks;
+  /// Integrals of the nodal values times each barycentric coordinate of every target
+  /// cell, one row of columns for each.
+  std::vector<double> loads;
   /// Volume of every target cell that its region in the source leaves uncovered.
   std::vector<double> uncovered;
   /// From the middle of that volume to the source, in mesh units.

@@ -25,8 +25,9 @@ from anistar.adapt import AdaptOptions, adapt
 from anistar.fields import Field
 from anistar.mesh import Mesh
 from anistar.metric import MetricOptions
-from anistar.transfer import METHODS, integral, supermesh, transfer
+from anistar.transfer import METHODS, TransferOptions, integral, transfer
 from anistar.transfer.difference import l2_difference
+from anistar.transfer.loading import overlapped
 from anistar.validation import validate
 
 try:
@@ -139,8 +140,8 @@ def row(name: str, source: Mesh, u: Floats, target: Mesh) -> list[str]:
     lost = np.isnan(carried)
     carried[lost] = u[KDTree(source.points).query(target.points[lost])[1]] if lost.any() else 0.0
     before, after = Field(u), Field(carried)
-    error = l2_difference(supermesh(source, target), before, after)
-    assert error is not None
+    seen = overlapped(source, {"u": before}, target, TransferOptions())
+    error = l2_difference(seen.overlap, seen.given["u"], after)
     change = float(integral(target, after) / integral(source, before)) - 1
     extrema = f"{carried.min() - u.min():+.1e}, {carried.max() - u.max():+.1e}"
     return [name, f"{error[0]:.2e}", f"{change:+.1e}", extrema, str(lost.sum()), f"{seconds:.2f}"]

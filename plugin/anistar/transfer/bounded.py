@@ -9,7 +9,8 @@ from scipy.sparse import csr_array
 
 from ..mesh import Mesh
 from ..topology import Float, Int
-from .projection import Projector
+from .intersection import Supermesh
+from .projection import Loaded, Projector
 
 # Rounds in which what the limiter cut from the fluxes is offered again.
 MAX_ROUNDS = 10
@@ -31,12 +32,11 @@ class Bounds:
         return np.clip(values, self.low, self.high)
 
 
-def local_bounds(projector: Projector, columns: Float, on: str) -> Bounds:
+def local_bounds(overlap: Supermesh, columns: Float, on: str) -> Bounds:
     """Return the extrema of the source over its cells that overlap the support of each value.
 
     The support is that of the basis function: the cells around a target point, or the one cell.
     """
-    overlap = projector.overlap
     source, target = overlap.source, overlap.target
     width = source.dim + 1
     if on == "points":
@@ -68,8 +68,8 @@ def _around_points(extremum: np.ufunc, by_cell: Float, target: Mesh, start: floa
     return result
 
 
-def bounded(projector: Projector, columns: Float, on: str) -> Float:
-    """Return the projection of (rows, c) values, within the local bounds of the source.
+def bounded(projector: Projector, field: Loaded) -> Float:
+    """Return the projection of a field, within the local bounds of the source.
 
     P0 values are means, which lie within their bounds. P1 values in each cell are drawn towards
     the mean of the cell [3]. Continuous P1 values are the lumped projection, a mean of source
@@ -89,14 +89,14 @@ def bounded(projector: Projector, columns: Float, on: str) -> Float:
     [4] S. T. Zalesak, Fully multidimensional flux-corrected transport algorithms for fluids,
         J. Comput. Phys. 31 (1979).
     """
-    bounds = local_bounds(projector, columns, on)
-    high_order = projector.projected(columns, on)
-    if on == "cells":
+    bounds = local_bounds(projector.overlap, field.columns, field.on)
+    high_order = projector.projected(field)
+    if field.on == "cells":
         limited = high_order
-    elif on == "cell_nodes":
+    elif field.on == "cell_nodes":
         limited = _towards_means(high_order, bounds, projector.overlap.target.dim + 1)
     else:
-        low_order = (projector.mixed(on) @ columns) / projector.mass.lumped[:, None]
+        low_order = field.load / projector.mass.lumped[:, None]
         limited = np.stack(
             [
                 _flux_corrected(projector, low, high, Bounds(floor, ceiling))
@@ -110,7 +110,7 @@ def bounded(projector: Projector, columns: Float, on: str) -> Float:
             ],
             axis=1,
         )
-    return _refilled(projector, bounds.clipped(limited), columns, bounds, on)
+    return _refilled(projector, field, bounds.clipped(limited), bounds)
 
 
 def _towards_means(values: Float, bounds: Bounds, width: int) -> Float:
@@ -167,13 +167,11 @@ def _part(room: Float, wanted: Float) -> Float:
     return np.minimum(ratio, 1.0)
 
 
-def _refilled(
-    projector: Projector, values: Float, columns: Float, bounds: Bounds, on: str
-) -> Float:
+def _refilled(projector: Projector, field: Loaded, values: Float, bounds: Bounds) -> Float:
     """Spread what is missing of each integral over the room left by the bounds."""
-    balance = projector.balance(on)
-    own = _own_entries(balance.after)
-    defect = balance.before @ columns - balance.after @ values
+    after = projector.functionals(field.on)[1]
+    own = _own_entries(after)
+    defect = projector.integrals(field) - after @ values
     up, down = bounds.high - values, bounds.low - values
     rise = _part_of_room(defect, own @ up)
     fall = _part_of_room(defect, own @ down)

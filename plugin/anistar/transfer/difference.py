@@ -7,33 +7,30 @@ import numpy as np
 from ..fields import Field
 from ..mesh import Mesh
 from ..topology import Float, cell_volumes
-from .columns import as_columns, power_of_two
-from .intersection import Sparse, Supermesh
+from .columns import as_columns
+from .intersection import Supermesh
+from .projection import Loaded, integrals_matrix
 
 
-def l2_difference(overlap: Supermesh, before: Field, after: Field) -> list[float] | None:
+def l2_difference(overlap: Supermesh, before: Loaded, after: Field) -> list[float]:
     """Return the L2 norm over the target of after minus before, for each component.
 
     The squares and the product are integrated exactly over the intersections, so that their
     difference is known to the round-off of the squares: the norm to about 1e-8 of that of the
-    field. Quadratic fields have no such matrix, and give None.
+    field.
     """
-    mixed: Sparse | None = {
-        "points": overlap.points,
-        "cells": overlap.cells,
-        "cell_nodes": overlap.blocks,
-    }[before.on]
-    width = overlap.source.dim + 1
-    if mixed is None or (before.on == "cell_nodes" and before.values.shape[1] != width):
-        return None
-    old, new = as_columns(before, logarithmic=False), as_columns(after, logarithmic=False)
+    on = before.on
     # About a mean, because a constant part would only add round-off.
-    scale, shift = power_of_two(old), old.mean(axis=0)
-    old, new = (old - shift) / scale, (new - shift) / scale
-    square = _squares(overlap.source, old, before.on, overlap.covered)
-    square += _squares(overlap.target, new, before.on, None)
-    square -= 2 * (new * (mixed @ old)).sum(axis=0)
-    return [scale * float(value) for value in np.sqrt(np.maximum(square, 0.0))]
+    shift = before.columns.mean(axis=0)
+    old = before.columns - shift
+    new = as_columns(after, logarithmic=False) / before.scale - shift
+    whole = np.zeros(overlap.target.n_cells, np.int32)
+    moments = integrals_matrix(overlap.target, whole, 1, on).toarray().ravel()
+    load = before.load - moments[:, None] * shift
+    square = _squares(overlap.source, old, on, overlap.covered)
+    square += _squares(overlap.target, new, on, None)
+    square -= 2 * (new * load).sum(axis=0)
+    return [before.scale * float(value) for value in np.sqrt(np.maximum(square, 0.0))]
 
 
 def _squares(mesh: Mesh, columns: Float, on: str, covered: Float | None) -> Float:

@@ -6,29 +6,35 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, diags_array, vstack
+from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
 from ..mesh import Mesh
-from ..topology import Float, Int, cell_volumes
-from .intersection import Sparse, Supermesh
+from ..topology import Bool, Float, Int, cell_volumes
+from .intersection import Supermesh
 from .mass import Mass, mass
 
 
 @dataclass(frozen=True, eq=False)
-class Balance:
-    """Which integrals a projection keeps: linear functionals before and after.
+class Loaded:
+    """A field on the source as a projection sees it.
 
     Attributes
     ----------
-    before : (r, n_source) csr_array
-        Integral over each place of a field on the source, as the target sees it.
-    after : (r, n_target) csr_array
-        The same of a field on the target.
+    on : {"points", "cells", "cell_nodes"}
+        Where its values live.
+    columns : (n_source, c) float64
+        Its values.
+    load : (n_target, c) float64
+        Integrals of the target's basis functions times it.
+    scale : float
+        What the field was divided by.
     """
 
-    before: csr_array
-    after: csr_array
+    on: str
+    columns: Float
+    load: Float
+    scale: float = 1.0
 
 
 class Projector:
@@ -38,7 +44,8 @@ class Projector:
     source. For continuous P1 fields, whose hat functions straddle interfaces, the plain Galerkin
     projection [1] keeps the total only; the constraints add one vector for each region,
     and for a single region nothing but round-off. As they are satisfied by a small dense solve,
-    the integrals do not depend on the tolerance of the iteration.
+    the integrals do not depend on the tolerance of the iteration. Regions that the two meshes do
+    not cover alike are constrained together, to the integral that the target sees.
 
     References
     ----------
@@ -49,6 +56,8 @@ class Projector:
 
     def __init__(self, overlap: Supermesh) -> None:
         self.overlap = overlap
+        self._functionals: dict[str, tuple[csr_array, csr_array]] = {}
+        self._corrections: dict[str, tuple[Float, Float]] = {}
 
     @cached_property
     def mass(self) -> Mass:
@@ -61,15 +70,14 @@ class Projector:
         target = self.overlap.target
         return cell_volumes(target.points, target.cells)
 
-    def mixed(self, on: str) -> Sparse:
-        """Return the matrix of integrals of target basis functions times source ones."""
-        matrix = {
-            "points": self.overlap.points,
-            "cells": self.overlap.cells,
-            "cell_nodes": self.overlap.blocks,
-        }[on]
-        assert matrix is not None, f"the supermesh was made without {on}"
-        return matrix
+    @cached_property
+    def kept(self) -> Bool:
+        """Whether each region is covered alike by both meshes."""
+        return self.overlap.coincides()
+
+    def loaded(self, columns: Float, on: str) -> Loaded:
+        """Return (rows, c) values on the source with their load, by the mixed matrix."""
+        return Loaded(on, columns, np.asarray(self.overlap.matrix(on) @ columns))
 
     def solved(self, load: Float, on: str) -> Float:
         """Return the inverse of the target's mass matrix, applied to the (rows, c) load."""
@@ -79,89 +87,85 @@ class Projector:
             return np.asarray(load / self.volumes[:, None])
         return _solved_in_cells(load, self.volumes, self.overlap.target.dim)
 
-    def balance(self, on: str) -> Balance:
-        """Return the constraints: one for each region that both meshes cover, one for the rest."""
-        if on not in self._balances:
-            self._balances[on] = self._balance(on)
-        return self._balances[on]
+    def functionals(self, on: str) -> tuple[csr_array, csr_array]:
+        """Return what integrates over the kept regions of the source, and over all constraints.
 
-    @cached_property
-    def _balances(self) -> dict[str, Balance]:
-        return {}
+        The second has one row more when some regions are not kept: the integral over those.
+        """
+        if on not in self._functionals:
+            overlap, kept = self.overlap, self.kept
+            groups = np.where(kept, np.cumsum(kept) - 1, np.count_nonzero(kept))
+            count = int(np.count_nonzero(kept))
+            before = integrals_matrix(overlap.source, groups[overlap.regions.source], count, on)
+            total = count + int(not kept.all())
+            after = integrals_matrix(overlap.target, groups[overlap.regions.target], total, on)
+            self._functionals[on] = before, after
+        return self._functionals[on]
 
-    def _balance(self, on: str) -> Balance:
-        overlap = self.overlap
-        same = overlap.coincides()
-        groups = np.where(same, np.cumsum(same) - 1, np.count_nonzero(same))
-        count = int(groups.max()) + 1
-        before = integrals_matrix(overlap.source, groups[overlap.regions.source], count, on)
-        after = integrals_matrix(overlap.target, groups[overlap.regions.target], count, on)
-        if not same.all():
-            # What the target sees of the source, fills included, less the regions kept apart.
-            seen = csr_array(self.mixed(on).sum(axis=0)[None, :])
-            rest = csr_array(seen - before[:-1].sum(axis=0)[None, :])
-            before = csr_array(vstack([before[:-1], rest]))
-        return Balance(before, after)
+    def integrals(self, field: Loaded) -> Float:
+        """Return the (r, c) integrals of the source that the target shall have."""
+        before, after = self.functionals(field.on)
+        kept = np.asarray(before @ field.columns)
+        if after.shape[0] == before.shape[0]:
+            return kept
+        rest = field.load.sum(axis=0) - kept.sum(axis=0)
+        return np.concatenate([kept, rest[None]])
 
     def corrections(self, on: str) -> tuple[Float, Float]:
         """Return the (n, r) vectors that change one integral each, and their (r, r) integrals."""
         if on not in self._corrections:
-            after = self.balance(on).after
+            after = self.functionals(on)[1]
             vectors = self.solved(after.toarray().T, on)
-            self._corrections[on] = (vectors, after @ vectors)
+            self._corrections[on] = vectors, np.asarray(after @ vectors)
         return self._corrections[on]
 
-    @cached_property
-    def _corrections(self) -> dict[str, tuple[Float, Float]]:
-        return {}
-
-    def projected(self, columns: Float, on: str) -> Float:
-        """Return the projection of (rows, c) values on the source."""
-        values = self.solved(self.mixed(on) @ columns, on)
-        return self.balanced(values, columns, on)
-
-    def balanced(self, values: Float, columns: Float, on: str) -> Float:
-        """Return the nearest values in L2 with the integrals of the source."""
-        vectors, gram = self.corrections(on)
-        balance = self.balance(on)
-        defect = balance.before @ columns - balance.after @ values
+    def projected(self, field: Loaded) -> Float:
+        """Return the (n_target, c) projection of a field."""
+        values = self.solved(field.load, field.on)
+        vectors, gram = self.corrections(field.on)
+        defect = self.integrals(field) - self.functionals(field.on)[1] @ values
         return np.asarray(values + vectors @ np.linalg.solve(gram, defect))
 
     def operator(self, on: str) -> LinearOperator:
         """Return the projection as a linear operator with its adjoint."""
-        mixed, balance = self.mixed(on), self.balance(on)
+        mixed, (before, after) = self.overlap.matrix(on), self.functionals(on)
         vectors, gram = self.corrections(on)
+        count = before.shape[0]
+
+        def direct(values: Float) -> Float:
+            return self.projected(self.loaded(values.reshape(-1, 1), on)).ravel()
 
         def adjoint(values: Float) -> Float:
             flat = values.reshape(-1, 1)
             multiplier = np.linalg.solve(gram.T, vectors.T @ flat)
-            kept = flat - balance.after.T @ multiplier
-            result = mixed.T @ self.solved(kept, on) + balance.before.T @ multiplier
-            return np.asarray(result).ravel()
+            rest = multiplier[count:].sum()
+            through = self.solved(flat - after.T @ multiplier, on) + rest
+            return np.asarray(mixed.T @ through + before.T @ (multiplier[:count] - rest)).ravel()
 
-        return LinearOperator(
-            mixed.shape,
-            matvec=lambda values: self.projected(values.reshape(-1, 1), on).ravel(),
-            rmatvec=adjoint,
-            dtype=np.float64,
-        )
+        return LinearOperator(mixed.shape, matvec=direct, rmatvec=adjoint, dtype=np.float64)
 
     def lumped(self, on: str) -> LinearOperator:
         """Return the low-order part of the bounded method: load over lumped mass."""
-        if on == "cells":
-            return aslinearoperator(csr_array(diags_array(1 / self.volumes) @ self.mixed(on)))
-        if on == "points":
-            return aslinearoperator(csr_array(diags_array(1 / self.mass.lumped) @ self.mixed(on)))
-        raise ValueError("the low-order operator exists for points and cells, not for cell_nodes")
+        if on == "cell_nodes":
+            raise ValueError(
+                "the low-order operator exists for points and cells, not for cell_nodes"
+            )
+        scale = 1 / (self.volumes if on == "cells" else self.mass.lumped)
+        return aslinearoperator(csr_array(diags_array(scale) @ self.overlap.matrix(on)))
 
 
 def integrals_matrix(mesh: Mesh, groups: Int, count: int, on: str) -> csr_array:
-    """Return the (count, n) functionals that integrate a field over the cells of each group."""
+    """Return the (count, n) functionals that integrate a field over the cells of each group.
+
+    Cells whose group is `count` or more belong to none.
+    """
     volumes = cell_volumes(mesh.points, mesh.cells)
     width = 1 if on == "cells" else mesh.dim + 1
     size = {"points": mesh.n_points, "cells": mesh.n_cells, "cell_nodes": mesh.n_cells * width}[on]
     columns = mesh.cells.ravel() if on == "points" else np.arange(mesh.n_cells * width)
-    entries = (np.repeat(volumes / width, width), (np.repeat(groups, width), columns))
+    weights, rows = np.repeat(volumes / width, width), np.repeat(groups, width)
+    chosen = rows < count
+    entries = (weights[chosen], (rows[chosen], columns[chosen]))
     return csr_array(coo_array(entries, shape=(count, size)))
 
 

@@ -15,15 +15,15 @@ from ..fields import Field, as_fields
 from ..mesh import Mesh
 from ..options import require
 from .bounded import bounded
-from .columns import as_columns, from_columns, power_of_two
+from .columns import from_columns
 from .coverage import require_covered
 from .difference import l2_difference
 from .interpolation import Interpolator
-from .intersection import Supermesh, supermesh
 from .labels import majority
+from .loading import Overlapped, overlapped
 from .measure import integral, integral_by_region
 from .options import Outside, TransferOptions
-from .projection import Projector
+from .projection import Loaded, Projector
 from .regions import Regions, common_regions
 from .report import FieldChange, TransferReport
 
@@ -41,7 +41,7 @@ class _Carried:
     fields: dict[str, Field]
     points_outside: int
     max_distance: float
-    overlap: Supermesh | None
+    seen: Overlapped | None
 
 
 def transfer(
@@ -96,17 +96,24 @@ def transfer(
         if options.method == "interpolate"
         else _projected(source, checked, target, options)
     )
-    overlap = done.overlap
-    if overlap is None and options.wants_l2_difference:
-        overlap = _intersected(source, checked, target, options)
+    seen = done.seen
+    if seen is None and options.wants_l2_difference:
+        seen = overlapped(source, checked, target, options)
+    wanted = options.wants_l2_difference
     report = TransferReport(
         method=options.method,
         outside=options.outside,
         points_outside=done.points_outside,
         max_distance=done.max_distance,
-        coverage=overlap.coverage() if overlap is not None else None,
+        coverage=seen.overlap.coverage() if seen is not None else None,
         changes={
-            name: _change(source, field, target, done.fields[name], overlap, options)
+            name: _change(
+                source,
+                field,
+                target,
+                done.fields[name],
+                _l2_difference(seen, name, done.fields[name]) if wanted else None,
+            )
             for name, field in checked.items()
             if field.kind != "label"
         },
@@ -148,24 +155,18 @@ def _projected(
 ) -> _Carried:
     for name, field in fields.items():
         _require_projectable(name, field, source, options)
-    overlap = _intersected(source, fields, target, options)
-    require_covered(overlap, options)
-    projector = Projector(overlap)
-    carried = {name: _project(projector, field, options) for name, field in fields.items()}
-    return _Carried(carried, 0, float(overlap.distance.max()), overlap)
-
-
-def _intersected(
-    source: Mesh, fields: Mapping[str, Field], target: Mesh, options: TransferOptions
-) -> Supermesh:
-    places = {field.on for field in fields.values()}
-    return supermesh(
-        source,
-        target,
-        points="points" in places,
-        blocks="cell_nodes" in places,
-        threads=options.threads,
-    )
+    seen = overlapped(source, fields, target, options)
+    require_covered(seen.overlap, options)
+    projector = Projector(seen.overlap)
+    carried = {
+        name: replace(
+            field, values=majority(csr_array(seen.overlap.matrix(field.on)), field.values)
+        )
+        if field.kind == "label"
+        else _project(projector, seen.carried[name], field, options)
+        for name, field in fields.items()
+    }
+    return _Carried(carried, 0, float(seen.overlap.distance.max()), seen)
 
 
 def _require_projectable(name: str, field: Field, source: Mesh, options: TransferOptions) -> None:
@@ -181,14 +182,10 @@ def _require_projectable(name: str, field: Field, source: Mesh, options: Transfe
         )
 
 
-def _project(projector: Projector, field: Field, options: TransferOptions) -> Field:
-    if field.kind == "label":
-        return replace(field, values=majority(csr_array(projector.mixed(field.on)), field.values))
-    columns = as_columns(field, logarithmic=options.log_euclidean)
+def _project(projector: Projector, loaded: Loaded, field: Field, options: TransferOptions) -> Field:
     project = bounded if options.method == "bounded" else Projector.projected
-    scale = power_of_two(columns)
-    carried = scale * project(projector, columns / scale, field.on)
-    return from_columns(carried, field, logarithmic=options.log_euclidean)
+    columns = loaded.scale * project(projector, loaded)
+    return from_columns(columns, field, logarithmic=options.log_euclidean)
 
 
 def _change(
@@ -196,8 +193,7 @@ def _change(
     before: Field,
     target: Mesh,
     after: Field,
-    overlap: Supermesh | None,
-    options: TransferOptions,
+    difference: list[float] | None,
 ) -> FieldChange:
     pairs = ((source, before), (target, after))
     axes = (0, 1) if before.on == "cell_nodes" else (0,)
@@ -206,12 +202,14 @@ def _change(
         minimum=_pair(*(field.values.min(axis=axes) for _, field in pairs)),
         maximum=_pair(*(field.values.max(axis=axes) for _, field in pairs)),
         defects=_defects(source, before, target, after, common_regions(source, target)),
-        l2_difference=(
-            l2_difference(overlap, before, after)
-            if overlap is not None and options.wants_l2_difference
-            else None
-        ),
+        l2_difference=difference,
     )
+
+
+def _l2_difference(seen: Overlapped | None, name: str, after: Field) -> list[float] | None:
+    if seen is None or name not in seen.given:
+        return None
+    return l2_difference(seen.overlap, seen.given[name], after)
 
 
 def _pair(before: Any, after: Any) -> tuple[list[float], list[float]]:

@@ -38,8 +38,11 @@ nb::dict
 supermesh_of(const Array2<double> &source_points, const Array2<Index> &source_cells,
              const Array1<Index> &source_regions, const Array2<double> &target_points,
              const Array2<Index> &target_cells, const Array1<Index> &target_regions,
-             bool points, bool pairs, bool blocks, int threads,
-             const nb::object &callback) {
+             const Array2<double> &nodal, bool points, bool pairs, bool blocks,
+             int threads, const nb::object &callback) {
+  const std::size_t n_columns = nodal.shape(1);
+  if (n_columns > 0 && nodal.shape(0) != source_cells.shape(0) * (d + 1))
+    throw std::invalid_argument("nodal values are needed for every corner of a cell");
   const auto source = region_mesh<d>(source_points, source_cells, source_regions);
   const auto target = region_mesh<d>(target_points, target_cells, target_regions);
   Monitor monitor(interruptible(callback), std::numeric_limits<std::size_t>::max(),
@@ -47,7 +50,9 @@ supermesh_of(const Array2<double> &source_points, const Array2<Index> &source_ce
   Supermesh<d> made;
   {
     nb::gil_scoped_release release;
-    made = supermesh<d>(source, target, {points, pairs, blocks, threads}, monitor);
+    const SupermeshSettings settings{
+        points, pairs, blocks, {nodal.data(), nodal.size()}, n_columns, threads};
+    made = supermesh<d>(source, target, settings, monitor);
   }
   nb::dict out;
   if (points)
@@ -63,6 +68,8 @@ supermesh_of(const Array2<double> &source_points, const Array2<Index> &source_ce
     out["blocks"] = nb::ndarray<nb::numpy, double>(
         reinterpret_cast<double *>(kept->data()), {n, d + 1, d + 1}, owner);
   }
+  out["loads"] =
+      owned(std::move(made.loads), {target.cells.size() * (d + 1), n_columns});
   out["uncovered"] = owned(std::move(made.uncovered), {target.cells.size()});
   out["distance"] = owned(std::move(made.distance), {target.cells.size()});
   out["covered"] = owned(std::move(made.covered), {source.cells.size()});
@@ -73,11 +80,12 @@ template <std::size_t d> void bind_dimension(nb::module_ &module, const char *na
   module.def(name, &supermesh_of<d>, nb::arg("source_points").noconvert(),
              nb::arg("source_cells").noconvert(), nb::arg("source_regions").noconvert(),
              nb::arg("target_points").noconvert(), nb::arg("target_cells").noconvert(),
-             nb::arg("target_regions").noconvert(), nb::kw_only(), nb::arg("points"),
-             nb::arg("pairs"), nb::arg("blocks"), nb::arg("threads"),
-             nb::arg("callback").none(),
+             nb::arg("target_regions").noconvert(), nb::arg("nodal").noconvert(),
+             nb::kw_only(), nb::arg("points"), nb::arg("pairs"), nb::arg("blocks"),
+             nb::arg("threads"), nb::arg("callback").none(),
              "Lay two meshes over each other: matrices (starts, columns, values) "
-             "between points and between cells, moments of the pairs, and coverage.");
+             "between points and between cells, moments of the pairs, loads of nodal "
+             "values, and coverage.");
 }
 
 } // namespace
