@@ -17,7 +17,14 @@ from .mesh import MeshLike
 from .normalisation import normalised
 from .options import MetricOptions
 from .pipeline import from_fields
-from .recovery import recover_hessian
+from .recovery import (
+    RecoveryConfidence,
+    RecoveryOptions,
+    p2_nodes,
+    recover_gradient,
+    recover_hessian,
+    recovery_confidence,
+)
 from .sizes import from_sizes
 
 __all__ = [
@@ -26,6 +33,8 @@ __all__ = [
     "MeshLike",
     "MetricError",
     "MetricOptions",
+    "RecoveryConfidence",
+    "RecoveryOptions",
     "Stage",
     "absolute",
     "bounded",
@@ -42,6 +51,9 @@ __all__ = [
     "mean",
     "mesh_edges",
     "normalised",
+    "p2_nodes",
+    "recover_gradient",
     "recover_hessian",
+    "recovery_confidence",
     "sqrt_metric",
 ]

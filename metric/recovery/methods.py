@@ -1,0 +1,393 @@
+"""The methods of recovery on a cut mesh, and the choice between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..graph import VertexGraph, wide_graph
+from ..mesh import MeshLike
+from .boundary import Boundary, boundary_of
+from .cells import CellGeometry, cell_geometry
+from .cut import CutMesh, cut_open
+from .fit import LAST_PIVOT, PATCH_LEVELS, SMALLEST_PIVOT, Cloud, Fits, covariances, fit_patches
+from .noise import (
+    NOISE_GAIN,
+    P2_NOISE_GAIN,
+    ROUNDOFF,
+    damped,
+    estimated_noise,
+    hessian_norm,
+)
+from .options import EXTRAPOLATED, RecoveryOptions
+from .projection import L2Projection, PatchProjection, Projection
+from .quadratic import quadratic_cloud
+from .spaces import QuadraticCells, Samples, on_cut, quadratic_cells
+from .weak import weak_hessian
+
+Array = NDArray[np.float64]
+
+QUADRATIC, LINEAR = 2, 1
+"""Orders: a quadratic was fitted, or gradients were projected twice."""
+
+MEASURABLE_NOISE = 1e-12
+"""Noise relative to the values from which larger patches are tried against it."""
+
+CLEAR_SIGNAL = 8.0
+"""Hessians this many times above the noise need no larger patch."""
+
+LARGEST_GROWTH = 3
+"""Highest level to which patches are grown against noise."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """A cut mesh with samples on it, and what the methods need of it, computed once."""
+
+    cut: CutMesh
+    samples: Samples
+    options: RecoveryOptions
+    given_graph: VertexGraph | None
+
+    @cached_property
+    def graph(self) -> VertexGraph:
+        """The wide graph of the cut mesh."""
+        return self.given_graph if self.given_graph is not None else wide_graph(self.cut)
+
+    @cached_property
+    def boundary(self) -> Boundary:
+        """The boundary of the cut mesh, interfaces included."""
+        return boundary_of(self.geometry)
+
+    @cached_property
+    def geometry(self) -> CellGeometry:
+        """The geometry of the cells."""
+        return cell_geometry(self.cut)
+
+    @cached_property
+    def cloud(self) -> Cloud:
+        """What quadratics are fitted to."""
+        return quadratic_cloud(self.geometry, self.graph, self.samples)
+
+    @property
+    def levels(self) -> range:
+        """How often patches for quadratics are grown; six cells would just determine one."""
+        return range(1 if self.samples.space == "P0" else 0, PATCH_LEVELS)
+
+    @property
+    def noise_gain(self) -> float:
+        """The norm of the Hessian that noise of standard deviation one makes."""
+        is_direct = self.samples.space == "P2" and self.method not in ("quadratic", "green")
+        return P2_NOISE_GAIN if is_direct else NOISE_GAIN
+
+    @cached_property
+    def p2_functions(self) -> QuadraticCells:
+        """The P2 functions of the samples in the cells."""
+        return quadratic_cells(self.geometry, self.samples)
+
+    @property
+    def method(self) -> str:
+        """The method, chosen by the space for ``auto`` from the table in the documentation.
+
+        P2 functions have second derivatives in the cells, which ``zz`` fits with half the
+        error of a quadratic through the nodes.
+        """
+        if self.options.method != "auto":
+            return self.options.method
+        return "zz" if self.samples.space == "P2" else "quadratic"
+
+    @property
+    def is_extrapolated(self) -> bool:
+        """Whether values at the boundary are extrapolated."""
+        if self.options.boundary == "auto":
+            return self.method in EXTRAPOLATED
+        return self.options.boundary == "extrapolated"
+
+    @cached_property
+    def projection(self) -> Projection:
+        """The projection by which the method turns values in cells into point values."""
+        consistent = self.method == "mixed_l2" or (
+            self.method == "l2" and self.options.mass == "consistent"
+        )
+        l2 = L2Projection(geometry=self.geometry, is_consistent=consistent)
+        if self.method in ("l2", "mixed_l2", "green"):
+            return l2
+        by_volume = self.method == "clement"
+        return PatchProjection(geometry=self.geometry, by_volume=by_volume, fallback=l2)
+
+    def bounded(self, values: Array) -> Array:
+        """Apply the boundary treatment to point values (n, ...)."""
+        return self.boundary.extrapolated(values) if self.is_extrapolated else values
+
+    def by(self, method: str) -> Setting:
+        """Return the same setting with another method."""
+        return replace(self, options=replace(self.options, method=method), given_graph=self.graph)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecoveredHessian:
+    """Hessians (N, k, d, d) on a cut mesh with N points, and how they were found.
+
+    Attributes
+    ----------
+    hessian : ndarray (N, k, d, d)
+    order : ndarray (N,) of int8
+        2 where a quadratic was fitted, 1 where gradients were projected twice.
+    pivot : ndarray (N,)
+        Conditioning of the patch, 0 without a fit.
+    level : ndarray (N,) of int8
+        How often the patch was grown, -1 without a fit.
+    covariance : ndarray (N, d, d)
+        Of the patch, in length**2.
+    threshold : ndarray (N, k)
+        The norm of the Hessian that noise can make, see `hessian_norm`.
+    noise : ndarray (k,)
+        Standard deviation of the values.
+    """
+
+    hessian: Array
+    order: NDArray[np.int8]
+    pivot: Array
+    level: NDArray[np.int8]
+    covariance: Array
+    threshold: Array
+    noise: Array
+
+    @cached_property
+    def norm(self) -> Array:
+        """Norms (N, k) of the Hessians, see `hessian_norm`."""
+        return hessian_norm(self.hessian, self.covariance)
+
+    @cached_property
+    def damped(self) -> Array:
+        """The Hessians without what noise can have made."""
+        return damped(self.hessian, self.covariance, self.threshold)
+
+
+def setting_of(
+    mesh: MeshLike, samples: Samples, options: RecoveryOptions, graph: VertexGraph | None = None
+) -> Setting:
+    """Cut `mesh` open and put the samples on it; `graph` is its wide graph, if known."""
+    cut = cut_open(mesh, interfaces=options.interfaces)
+    is_cut = len(cut.origin) > cut.n_given
+    return Setting(
+        cut=cut,
+        samples=on_cut(samples, cut),
+        options=options,
+        given_graph=None if is_cut else graph,
+    )
+
+
+def recovered_gradient(setting: Setting) -> Array:
+    """Gradients (N, k, d) by the method of the setting."""
+    if setting.method == "quadratic":
+        fits = _fitted(setting)
+        gradient, missing = fits.gradient, fits.level < 0
+        if missing.any():
+            gradient[missing] = recovered_gradient(setting.by("l2"))[missing]
+        return setting.bounded(gradient)
+    if setting.samples.space == "P2":
+        return setting.bounded(setting.projection.gradients(setting.p2_functions))
+    return _projected_gradient(setting, _point_values(setting))
+
+
+def hessian_as_found(setting: Setting) -> Array:
+    """Hessians (N, k, d, d) by the method of the setting, without regard to noise."""
+    if setting.method != "quadratic":
+        return _projected_hessian(setting)
+    return _fitted_hessian(setting, _fitted(setting))
+
+
+def recovered_hessian(setting: Setting, noise: Array | None = None) -> RecoveredHessian:
+    """Hessians by the method of the setting, with the means to damp noise (k,)."""
+    points, N = setting.cut.points, len(setting.cut.points)
+    noise = _noise(setting) if noise is None else noise
+    if setting.method != "quadratic":
+        graph = setting.graph
+        v = points[graph.neighbours] - points[graph.sources]
+        covariance = covariances(v, graph.offsets[:-1], np.diff(graph.offsets))
+        return RecoveredHessian(
+            hessian=_projected_hessian(setting),
+            order=np.full(N, LINEAR, dtype=np.int8),
+            pivot=np.zeros(N),
+            level=np.full(N, -1, dtype=np.int8),
+            covariance=covariance,
+            threshold=_threshold(setting, noise),
+            noise=noise,
+        )
+    fits = _fitted(setting)
+    if setting.options.method == "auto":
+        _grow_against_noise(setting, fits, noise)
+    return RecoveredHessian(
+        hessian=_fitted_hessian(setting, fits),
+        order=np.where(fits.level < 0, LINEAR, QUADRATIC).astype(np.int8),
+        pivot=fits.pivot,
+        level=fits.level,
+        covariance=fits.covariance,
+        threshold=_threshold(setting, noise),
+        noise=noise,
+    )
+
+
+def _fitted(setting: Setting) -> Fits:
+    """Quadratics around all points; ``quadratic`` takes badly conditioned patches, or raises."""
+    is_auto = setting.options.method == "auto"
+    pivots = (SMALLEST_PIVOT,) if is_auto else (SMALLEST_PIVOT, LAST_PIVOT)
+    fits = fit_patches(
+        setting.cut.points,
+        setting.cloud,
+        setting.graph.matrix(),
+        degree=2,
+        levels=setting.levels,
+        pivots=pivots,
+    )
+    missing = np.unique(setting.cut.origin[fits.level < 0])
+    if missing.size and not is_auto:
+        raise ValueError(
+            f"no well conditioned patch for a quadratic fit at point {missing[0]} "
+            f"({missing.size} points in all): the mesh, or a region of it, is too small, use "
+            "method='auto'"
+        )
+    return fits
+
+
+def _fitted_hessian(setting: Setting, fits: Fits) -> Array:
+    """Hessians of the fits, and by ``l2`` where there is none."""
+    H, missing = fits.hessian, fits.level < 0
+    if missing.any():
+        H[missing] = _projected_hessian(setting.by("l2"))[missing]
+    return setting.bounded(H)
+
+
+def _point_values(setting: Setting) -> Array:
+    """Point values (N, k): those given, or of quadratics with the given means over the cells.
+
+    A projection of the means would be wrong by a term of first order that depends on the shape
+    of the patch, and its second differences grow with every refinement.
+    """
+    if setting.samples.space != "P0":
+        return setting.samples.columns
+    fits = fit_patches(
+        setting.cut.points,
+        setting.cloud,
+        setting.graph.matrix(),
+        degree=2,
+        levels=setting.levels,
+        pivots=(SMALLEST_PIVOT, LAST_PIVOT),
+    )
+    values, missing = fits.value, fits.level < 0
+    if missing.any():
+        l2 = L2Projection(geometry=setting.geometry, is_consistent=False)
+        values[missing] = l2.constants(setting.samples.columns)[missing]
+    return values
+
+
+def _projected_gradient(setting: Setting, values: Array) -> Array:
+    """Project the gradients in the cells of P1 fields (N, k) onto the points."""
+    in_cells = setting.geometry.gradients(values)
+    m, k, d = in_cells.shape
+    projected = setting.projection.constants(in_cells.reshape(m, k * d))
+    return setting.bounded(projected.reshape(-1, k, d))
+
+
+def _projected_hessian(setting: Setting) -> Array:
+    """Hessians (N, k, d, d) of the methods that project what they know in the cells."""
+    is_p2 = setting.samples.space == "P2"
+    if setting.method in ("mixed_l2", "green"):
+        return _weak_hessian(setting)
+    if is_p2:
+        in_cells = setting.p2_functions.hessians()
+        flat = in_cells.reshape(len(in_cells), -1)
+        return setting.bounded(setting.projection.constants(flat).reshape(-1, *in_cells.shape[1:]))
+    gradient = _projected_gradient(setting, _point_values(setting))
+    N, k, d = gradient.shape
+    H = _projected_gradient(setting, gradient.reshape(N, k * d)).reshape(N, k, d, d)
+    return np.asarray(0.5 * (H + H.transpose(0, 1, 3, 2)))
+
+
+def _weak_hessian(setting: Setting) -> Array:
+    """Hessians by Green's formula.
+
+    The gradient in the volume is that of the cells for ``green`` and for P2 samples, and the
+    recovered one in the mixed system for P1 samples.
+    """
+    geometry, is_green = setting.geometry, setting.method == "green"
+    corners = geometry.cells.shape[1]
+    at_boundary = None if is_green else recovered_gradient(setting)
+    if setting.samples.space == "P2":
+        in_cells = setting.p2_functions.gradients_at(np.full(corners, 1.0 / corners))
+    elif at_boundary is None:
+        in_cells = geometry.gradients(_point_values(setting))
+    else:
+        in_cells = at_boundary[geometry.cells].mean(axis=1)
+    integrals = weak_hessian(geometry, in_cells, at_boundary)
+    l2 = L2Projection(geometry=geometry, is_consistent=not is_green)
+    H = l2.solved(integrals.reshape(len(integrals), -1)).reshape(integrals.shape)
+    return setting.bounded(H)
+
+
+def _noise(setting: Setting) -> Array:
+    """Return the standard deviations (k,) of the samples: given, or estimated."""
+    if setting.options.noise is not None:
+        return np.full(setting.samples.columns.shape[1], setting.options.noise)
+    return estimated_noise(
+        setting.cut.points, setting.cloud, setting.graph.matrix(), setting.levels[0]
+    )
+
+
+def _threshold(setting: Setting, noise: Array) -> Array:
+    """Norms (N, k) of Hessians that noise and round-off can make."""
+    values = np.abs(setting.samples.columns)
+    if setting.samples.space == "P0":
+        table = setting.geometry.incidence
+        offsets, members = table.indptr, table.indices
+    else:
+        offsets, members = setting.graph.offsets, setting.graph.neighbours
+    size = np.maximum.reduceat(values[members], offsets[:-1], axis=0)
+    if setting.samples.space != "P0":
+        size = np.maximum(size, values[: len(size)])
+    return np.asarray(setting.noise_gain * noise + ROUNDOFF * size)
+
+
+def _grow_against_noise(setting: Setting, fits: Fits, noise: Array) -> None:
+    """Take larger patches where the signal is weak and the larger patch does not deny it.
+
+    A larger patch has less noise and more features that a quadratic cannot follow. It is taken
+    as long as the Hessian that it gives differs from the previous one by no more than noise can
+    explain, which is the rule of Lepskii [1]_.
+
+    References
+    ----------
+    .. [1] Lepskii, On a problem of adaptive estimation in Gaussian white noise, Theory of
+       Probability and its Applications 35, 1990.
+    """
+    size = np.abs(setting.samples.columns).max(axis=0, initial=0.0)
+    if not (noise > MEASURABLE_NOISE * size).any():
+        return
+    threshold = setting.noise_gain * noise
+    active = np.flatnonzero(fits.level >= 0)
+    for _ in range(LARGEST_GROWTH):
+        norm = hessian_norm(fits.hessian[active], fits.covariance[active])
+        is_weak = (norm < CLEAR_SIGNAL * threshold).any(axis=1)
+        active = active[is_weak & (fits.level[active] < LARGEST_GROWTH)]
+        taken = []
+        for level in np.unique(fits.level[active]):
+            rows = active[fits.level[active] == level]
+            grown = fit_patches(
+                setting.cut.points,
+                setting.cloud,
+                setting.graph.matrix(),
+                degree=2,
+                rows=rows,
+                levels=(int(level) + 1,),
+            )
+            change = hessian_norm(grown.hessian - fits.hessian[rows], fits.covariance[rows])
+            is_explained = (change <= threshold).all(axis=1) & (grown.level >= 0)
+            fits.put(rows[is_explained], grown, is_explained)
+            taken.append(rows[is_explained])
+        if not taken:
+            break
+        active = np.concatenate(taken)
