@@ -18,6 +18,7 @@ from .normalisation import normalised
 from .options import MetricOptions
 from .pipeline import from_fields
 from .recovery import (
+    METHODS,
     RecoveryConfidence,
     RecoveryOptions,
     p2_nodes,
@@ -29,6 +30,7 @@ from .sizes import from_sizes
 
 __all__ = [
     "ELEMENTS_PER_COMPLEXITY",
+    "METHODS",
     "Ledger",
     "MeshLike",
     "MetricError",

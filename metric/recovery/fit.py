@@ -83,6 +83,9 @@ class Fits:
         How often the patch was grown, -1 where there is no fit.
     covariance : ndarray (r, d, d)
         Of the positions of the samples, seen from the vertex, in length**2.
+    gain : ndarray (r,)
+        Root mean square of the norm of the Hessian, measured with the covariance, that noise
+        of standard deviation one makes; zero if it was not asked for.
     residual : ndarray (r, k)
         Standard deviation that the fit leaves, NaN where there are too few samples to say.
     """
@@ -93,6 +96,7 @@ class Fits:
     pivot: Array
     level: NDArray[np.int8]
     covariance: Array
+    gain: Array
     residual: Array
 
     def put(self, where: Rows, other: Fits, chosen: NDArray[np.bool_]) -> None:
@@ -111,6 +115,7 @@ def fit_patches(
     levels: Sequence[int] = range(PATCH_LEVELS),
     pivots: Sequence[float] = (SMALLEST_PIVOT,),
     with_residual: bool = False,
+    with_gain: bool = False,
 ) -> Fits:
     """Fit polynomials of `degree` around vertices, over patches grown until well conditioned.
 
@@ -132,6 +137,8 @@ def fit_patches(
         The smallest pivots to accept, tried in this order.
     with_residual : bool
         Whether to compute the residuals.
+    with_gain : bool
+        Whether to compute the gains.
 
     Notes
     -----
@@ -147,7 +154,7 @@ def fit_patches(
             for start in range(0, len(pending), step):
                 part = pending[start : start + step]
                 patches = _patches(cloud.first, neighbours, rows[part], level)
-                found = _fit(points, cloud, rows[part], patches, degree, with_residual)
+                found = _fit(points, cloud, rows[part], patches, degree, with_residual, with_gain)
                 found.level[:] = level
                 well = found.pivot > smallest_pivot
                 fits.put(part[well], found, well)
@@ -165,6 +172,7 @@ def _empty(r: int, k: int, d: int) -> Fits:
         pivot=np.zeros(r),
         level=np.full(r, -1, dtype=np.int8),
         covariance=np.zeros((r, d, d)),
+        gain=np.zeros(r),
         residual=np.full((r, k), np.nan),
     )
 
@@ -192,6 +200,7 @@ def _fit(
     patches: sparse.csr_array,
     degree: int,
     with_residual: bool,
+    with_gain: bool,
 ) -> Fits:
     """Fit around `rows`; patches with too few samples or on a line get the pivot 0."""
     d, k = points.shape[1], cloud.values.shape[1]
@@ -217,7 +226,16 @@ def _fit(
     else:
         base = np.add.reduceat(cloud.values[members], starts, axis=0) / counts[:, None]
     rise = (cloud.values[members] - np.repeat(base, counts, axis=0)).T
-    coefficients, pivot = _least_squares(basis, weight, rise, starts)
+    if with_gain:
+        # the response to the value at the vertex, of which all the rises are differences
+        through = 0.0 if cloud.at_vertices is None else 1.0
+        rise = np.concatenate([rise, np.full((1, len(members)), through)])
+    coefficients, pivot, factor = _least_squares(basis, weight, rise, starts)
+    if with_gain:
+        fits.gain[enough] = _gain(
+            basis, weight, starts, factor, coefficients[:, -1], list(enumerate(pairs))
+        )
+        coefficients, rise = coefficients[:, :-1], rise[:-1]
     if with_residual:
         fits.residual[enough] = _residual(basis, coefficients, rise, starts, counts)
     if cloud.at_vertices is None:
@@ -284,8 +302,8 @@ def _inverse_root(covariance: Array) -> Array:
 
 def _least_squares(
     basis: list[Array], weight: Array, rise: Array, starts: NDArray[np.intp]
-) -> tuple[Array, Array]:
-    """Coefficients (b, k, r) of the r fits, and their smallest pivots (r,).
+) -> tuple[Array, Array, tuple[Array, Array]]:
+    """Coefficients (b, k, r) of the r fits, their smallest pivots (r,), and the factorisation.
 
     The normal equations, scaled to a unit diagonal, by Cholesky factorisation of all the
     patches at once: the loops are over the basis functions.
@@ -312,7 +330,35 @@ def _least_squares(
                 normal[a, a] = np.sqrt(np.maximum(L, LAST_PIVOT))
             else:
                 normal[a, b] = L / normal[b, b]
-    return _substituted(normal, right * scale[:, None]) * scale[:, None], pivot
+    coefficients = _substituted(normal, right * scale[:, None]) * scale[:, None]
+    return coefficients, pivot, (normal, scale)
+
+
+def _gain(
+    basis: list[Array],
+    weight: Array,
+    starts: NDArray[np.intp],
+    factor: tuple[Array, Array],
+    response: Array,
+    pairs: list[tuple[int, tuple[int, int]]],
+) -> Array:
+    """Root mean squares (r,) of the second derivatives that noise of the samples makes.
+
+    Exact would be ``N^-1 (sum w^2 phi phi^T) N^-1`` with the normal matrix N; the sum is
+    replaced by N times a mean weight, one for each basis function.
+    """
+    normal, scale = factor
+    first = len(basis) - len(pairs)
+    square = np.zeros(len(starts))
+    for c, (i, j) in pairs:
+        unit = np.zeros((len(basis), 1, len(starts)))
+        unit[first + c] = scale[first + c]
+        inverse = _substituted(normal, unit)[first + c, 0] * scale[first + c]
+        phi = weight * basis[first + c] ** 2
+        mean = np.add.reduceat(weight * phi, starts) / np.add.reduceat(phi, starts)
+        variance = inverse * mean + response[first + c] ** 2
+        square += variance * (1.0 if i == j else 2.0)
+    return np.asarray(np.sqrt(square))
 
 
 def _substituted(L: Array, right: Array) -> Array:

@@ -16,6 +16,7 @@ from .cut import CutMesh, cut_open
 from .fit import LAST_PIVOT, PATCH_LEVELS, SMALLEST_PIVOT, Cloud, Fits, covariances, fit_patches
 from .noise import (
     NOISE_GAIN,
+    NOISE_MARGIN,
     P2_NOISE_GAIN,
     ROUNDOFF,
     damped,
@@ -36,7 +37,7 @@ QUADRATIC, LINEAR = 2, 1
 MEASURABLE_NOISE = 1e-12
 """Noise relative to the values from which larger patches are tried against it."""
 
-CLEAR_SIGNAL = 8.0
+CLEAR_SIGNAL = 5.0
 """Hessians this many times above the noise need no larger patch."""
 
 LARGEST_GROWTH = 3
@@ -205,6 +206,7 @@ def recovered_hessian(setting: Setting, noise: Array | None = None) -> Recovered
     """Hessians by the method of the setting, with the means to damp noise (k,)."""
     points, N = setting.cut.points, len(setting.cut.points)
     noise = _noise(setting) if noise is None else noise
+    is_measurable = _is_measurable(setting, noise)
     if setting.method != "quadratic":
         graph = setting.graph
         v = points[graph.neighbours] - points[graph.sources]
@@ -215,11 +217,11 @@ def recovered_hessian(setting: Setting, noise: Array | None = None) -> Recovered
             pivot=np.zeros(N),
             level=np.full(N, -1, dtype=np.int8),
             covariance=covariance,
-            threshold=_threshold(setting, noise),
+            threshold=_roundoff(setting) + setting.noise_gain * noise,
             noise=noise,
         )
-    fits = _fitted(setting)
-    if setting.options.method == "auto":
+    fits = _fitted(setting, with_gain=is_measurable)
+    if setting.options.method == "auto" and is_measurable:
         _grow_against_noise(setting, fits, noise)
     return RecoveredHessian(
         hessian=_fitted_hessian(setting, fits),
@@ -227,12 +229,12 @@ def recovered_hessian(setting: Setting, noise: Array | None = None) -> Recovered
         pivot=fits.pivot,
         level=fits.level,
         covariance=fits.covariance,
-        threshold=_threshold(setting, noise),
+        threshold=_roundoff(setting) + NOISE_MARGIN * fits.gain[:, None] * noise,
         noise=noise,
     )
 
 
-def _fitted(setting: Setting) -> Fits:
+def _fitted(setting: Setting, *, with_gain: bool = False) -> Fits:
     """Quadratics around all points; ``quadratic`` takes badly conditioned patches, or raises."""
     is_auto = setting.options.method == "auto"
     pivots = (SMALLEST_PIVOT,) if is_auto else (SMALLEST_PIVOT, LAST_PIVOT)
@@ -243,6 +245,7 @@ def _fitted(setting: Setting) -> Fits:
         degree=2,
         levels=setting.levels,
         pivots=pivots,
+        with_gain=with_gain,
     )
     missing = np.unique(setting.cut.origin[fits.level < 0])
     if missing.size and not is_auto:
@@ -338,8 +341,8 @@ def _noise(setting: Setting) -> Array:
     )
 
 
-def _threshold(setting: Setting, noise: Array) -> Array:
-    """Norms (N, k) of Hessians that noise and round-off can make."""
+def _roundoff(setting: Setting) -> Array:
+    """Norms (N, k) of Hessians that round-off can make."""
     values = np.abs(setting.samples.columns)
     if setting.samples.space == "P0":
         table = setting.geometry.incidence
@@ -349,7 +352,12 @@ def _threshold(setting: Setting, noise: Array) -> Array:
     size = np.maximum.reduceat(values[members], offsets[:-1], axis=0)
     if setting.samples.space != "P0":
         size = np.maximum(size, values[: len(size)])
-    return np.asarray(setting.noise_gain * noise + ROUNDOFF * size)
+    return np.asarray(ROUNDOFF * size)
+
+
+def _is_measurable(setting: Setting, noise: Array) -> bool:
+    size = np.abs(setting.samples.columns).max(axis=0, initial=0.0)
+    return bool((noise > MEASURABLE_NOISE * size).any())
 
 
 def _grow_against_noise(setting: Setting, fits: Fits, noise: Array) -> None:
@@ -364,14 +372,11 @@ def _grow_against_noise(setting: Setting, fits: Fits, noise: Array) -> None:
     .. [1] Lepskii, On a problem of adaptive estimation in Gaussian white noise, Theory of
        Probability and its Applications 35, 1990.
     """
-    size = np.abs(setting.samples.columns).max(axis=0, initial=0.0)
-    if not (noise > MEASURABLE_NOISE * size).any():
-        return
-    threshold = setting.noise_gain * noise
     active = np.flatnonzero(fits.level >= 0)
     for _ in range(LARGEST_GROWTH):
+        threshold = NOISE_MARGIN * fits.gain[:, None] * noise
         norm = hessian_norm(fits.hessian[active], fits.covariance[active])
-        is_weak = (norm < CLEAR_SIGNAL * threshold).any(axis=1)
+        is_weak = (norm < CLEAR_SIGNAL * threshold[active]).any(axis=1)
         active = active[is_weak & (fits.level[active] < LARGEST_GROWTH)]
         taken = []
         for level in np.unique(fits.level[active]):
@@ -383,9 +388,10 @@ def _grow_against_noise(setting: Setting, fits: Fits, noise: Array) -> None:
                 degree=2,
                 rows=rows,
                 levels=(int(level) + 1,),
+                with_gain=True,
             )
             change = hessian_norm(grown.hessian - fits.hessian[rows], fits.covariance[rows])
-            is_explained = (change <= threshold).all(axis=1) & (grown.level >= 0)
+            is_explained = (change <= threshold[rows]).all(axis=1) & (grown.level >= 0)
             fits.put(rows[is_explained], grown, is_explained)
             taken.append(rows[is_explained])
         if not taken:
