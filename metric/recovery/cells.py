@@ -10,10 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ..mesh import MeshLike, cell_volumes, point_volumes
+from ..mesh import MeshLike, point_volumes
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int32]
+
+
+BLOCK = 32768
+"""Cells treated at once, so that the arrays of a block stay in the cache."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,14 +67,12 @@ class CellGeometry:
 
     def gradients(self, columns: Array) -> Array:
         """Gradients (m, k, d) in the cells of P1 fields (n, k)."""
-        return self.sloped([columns[c] for c in self.cells.T])
-
-    def sloped(self, corner_values: list[Array]) -> Array:
-        """Gradients (m, k, d) of linear functions with the values (m, k) at each corner."""
-        first, *others = corner_values
-        gradients = np.zeros((*first.shape, self.points.shape[1]))
-        for i, values in enumerate(others):
-            gradients += (values - first)[:, :, None] * self.slopes[:, i, None, :]
+        gradients = np.empty((len(self.cells), columns.shape[1], self.points.shape[1]))
+        for start in range(0, len(self.cells), BLOCK):
+            part = slice(start, start + BLOCK)
+            values = columns[self.cells[part]]
+            rise = values[:, 1:] - values[:, :1]
+            np.matmul(rise.transpose(0, 2, 1), self.slopes[part], out=gradients[part])
         return gradients
 
     def slope(self, corner: int) -> Array:
@@ -80,19 +82,11 @@ class CellGeometry:
 
 def cell_geometry(mesh: MeshLike) -> CellGeometry:
     """Compute the geometry of the cells of `mesh`."""
-    volumes = cell_volumes(mesh)
-    origin = mesh.points[mesh.cells[:, 0]]
-    edges = [mesh.points[c] - origin for c in mesh.cells.T[1:]]
-    slopes = np.empty((len(mesh.cells), len(edges), len(edges)))
-    if len(edges) == 2:
-        (a, b) = edges
-        det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-        slopes[:, 0, 0], slopes[:, 0, 1] = b[:, 1] / det, -b[:, 0] / det
-        slopes[:, 1, 0], slopes[:, 1, 1] = -a[:, 1] / det, a[:, 0] / det
-    else:
-        a, b, c = edges
-        slopes[:, 0], slopes[:, 1], slopes[:, 2] = np.cross(b, c), np.cross(c, a), np.cross(a, b)
-        slopes /= np.einsum("mi,mi->m", a, slopes[:, 0])[:, None, None]
+    m, d = len(mesh.cells), mesh.points.shape[1]
+    volumes, slopes = np.empty(m), np.empty((m, d, d))
+    for start in range(0, m, BLOCK):
+        part = slice(start, start + BLOCK)
+        volumes[part], slopes[part] = _slopes(mesh.points[mesh.cells[part]])
     return CellGeometry(
         points=mesh.points,
         cells=mesh.cells,
@@ -102,11 +96,27 @@ def cell_geometry(mesh: MeshLike) -> CellGeometry:
     )
 
 
+def _slopes(corners: Array) -> tuple[Array, Array]:
+    """Volumes and gradients of the barycentric coordinates of cells (m, d + 1, d)."""
+    edges = (corners[:, 1:] - corners[:, :1]).transpose(1, 2, 0).copy()
+    d = len(edges)
+    slopes = np.empty_like(edges)
+    if d == 2:
+        (ax, ay), (bx, by) = edges
+        slopes[0], slopes[1] = (by, -bx), (-ay, ax)
+    else:
+        for i in range(d):
+            (ax, ay, az), (bx, by, bz) = edges[i - 2], edges[i - 1]
+            slopes[i] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    det = (edges[0] * slopes[0]).sum(axis=0)
+    slopes /= det
+    return np.abs(det) / (2.0 if d == 2 else 6.0), slopes.transpose(2, 0, 1)
+
+
 def boundary_facets(cells: Index, n_points: int) -> Index:
     """Facets (f, d) that belong to one cell only, their points increasing."""
-    corners = np.sort(cells, axis=1)
     dim = cells.shape[1] - 1
-    columns = [np.concatenate(c) for c in zip(*_faces(corners), strict=True)]
+    columns = [np.concatenate(c) for c in zip(*_faces(_sorted_corners(cells)), strict=True)]
     if float(n_points) ** dim >= 2.0**63:
         order = np.lexsort(columns[::-1])
         return _lonely(np.stack(columns, axis=1)[order]).astype(np.int32)
@@ -139,9 +149,20 @@ def boundary_sides(geometry: CellGeometry) -> list[tuple[NDArray[np.intp], int]]
     return sides
 
 
-def _faces(corners: Index) -> list[tuple[Index, ...]]:
-    dim = corners.shape[1] - 1
-    return [tuple(corners[:, i] for i in face) for face in combinations(range(dim + 1), dim)]
+def _sorted_corners(cells: Index) -> list[Index]:
+    """Corners of the cells in increasing order, as columns: bubble sort of three or four."""
+    columns = [column.copy() for column in cells.T]
+    for last in range(len(columns) - 1, 0, -1):
+        for i in range(last):
+            low = np.minimum(columns[i], columns[i + 1])
+            columns[i + 1] = np.maximum(columns[i], columns[i + 1])
+            columns[i] = low
+    return columns
+
+
+def _faces(corners: list[Index]) -> list[tuple[Index, ...]]:
+    dim = len(corners) - 1
+    return [tuple(corners[i] for i in face) for face in combinations(range(dim + 1), dim)]
 
 
 def _lonely(rows: NDArray[np.int64] | Index) -> NDArray[np.int64]:

@@ -19,6 +19,7 @@ from .noise import (
     NOISE_MARGIN,
     P2_NOISE_GAIN,
     ROUNDOFF,
+    WEAK_NOISE_GAIN,
     damped,
     estimated_noise,
     hessian_norm,
@@ -34,8 +35,8 @@ Array = NDArray[np.float64]
 QUADRATIC, LINEAR = 2, 1
 """Orders: a quadratic was fitted, or gradients were projected twice."""
 
-MEASURABLE_NOISE = 1e-12
-"""Noise relative to the values from which larger patches are tried against it."""
+MEASURABLE_NOISE = 2e-15
+"""Noise relative to the values from which it is more than round-off."""
 
 CLEAR_SIGNAL = 5.0
 """Hessians this many times above the noise need no larger patch."""
@@ -81,8 +82,9 @@ class Setting:
     @property
     def noise_gain(self) -> float:
         """The norm of the Hessian that noise of standard deviation one makes."""
-        is_direct = self.samples.space == "P2" and self.method not in ("quadratic", "green")
-        return P2_NOISE_GAIN if is_direct else NOISE_GAIN
+        if self.method in ("green", "mixed_l2") and self.samples.space != "P2":
+            return WEAK_NOISE_GAIN
+        return P2_NOISE_GAIN if self.samples.space == "P2" else NOISE_GAIN
 
     @cached_property
     def p2_functions(self) -> QuadraticCells:

@@ -25,10 +25,12 @@ NOISE_MARGIN = 4.0
 """Noise reaches 2.6 times its root mean square in one of some thousand Hessians, and its
 standard deviation is estimated 10 % too small."""
 
-NOISE_GAIN = 6.0
+NOISE_GAIN = 5.0
 """Norm of the Hessian, measured with the covariance of the patch, that noise of standard
-deviation one makes in less than 1 of 100 patches of perturbed meshes, for the methods that
-project."""
+deviation one hardly ever makes by two projections."""
+
+WEAK_NOISE_GAIN = 25.0
+"""The same for weak Hessians, which average less."""
 
 P2_NOISE_GAIN = 60.0
 """The same for second derivatives in the cells of P2 functions, whose nodes are half as far

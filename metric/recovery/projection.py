@@ -55,7 +55,7 @@ class L2Projection:
         """Gradients (n, k, d) at the points of P2 functions."""
         geometry, corners = self.geometry, np.eye(self.geometry.cells.shape[1])
         m, n_corners = geometry.cells.shape
-        shape = (len(geometry.points), cells.corner_values[0].shape[1], geometry.points.shape[1])
+        shape = (len(geometry.points), *cells.gradient.shape[1:])
         right = np.zeros((shape[0], shape[1] * shape[2]))
         share = geometry.volumes[:, None] / n_corners
         total = np.zeros((m, right.shape[1]))

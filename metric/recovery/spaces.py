@@ -132,15 +132,18 @@ def read_fields(
 
 @dataclass(frozen=True, kw_only=True)
 class QuadraticCells:
-    """P2 functions in the cells: ``sum u_i b_i + sum c_ij b_i b_j``, b barycentric."""
+    """P2 functions in the cells: ``sum u_i b_i + sum c_ij b_i b_j``, b barycentric.
+
+    `gradient` (m, k, d) is that of the first sum, and `bubbles` are the c_ij (m, k).
+    """
 
     geometry: CellGeometry
-    corner_values: list[Array]
+    gradient: Array
     bubbles: dict[tuple[int, int], Array]
 
     def gradients_at(self, corner_weights: Array) -> Array:
         """Gradients (m, k, d) at the place with these barycentric coordinates (d + 1,)."""
-        gradients = self.geometry.sloped(self.corner_values)
+        gradients = self.gradient.copy()
         for (i, j), c in self.bubbles.items():
             slope = corner_weights[i] * self.geometry.slope(j)
             slope = slope + corner_weights[j] * self.geometry.slope(i)
@@ -149,8 +152,7 @@ class QuadraticCells:
 
     def hessians(self) -> Array:
         """Hessians (m, k, d, d), constant in each cell."""
-        m, k = self.corner_values[0].shape
-        d = self.geometry.points.shape[1]
+        m, k, d = self.gradient.shape
         H = np.zeros((m, k, d, d))
         for (i, j), c in self.bubbles.items():
             product = self.geometry.slope(i)[:, :, None] * self.geometry.slope(j)[:, None, :]
@@ -167,7 +169,7 @@ def quadratic_cells(geometry: CellGeometry, samples: Samples) -> QuadraticCells:
     bubbles = {}
     for (i, j), node in zip(combinations(range(cells.shape[1]), 2), nodes.T, strict=True):
         bubbles[i, j] = 4.0 * u[node] - 2.0 * (u[cells[:, i]] + u[cells[:, j]])
-    return QuadraticCells(geometry=geometry, corner_values=[u[c] for c in cells.T], bubbles=bubbles)
+    return QuadraticCells(geometry=geometry, gradient=geometry.gradients(u), bubbles=bubbles)
 
 
 def grouped(fields: Mapping[str, Samples]) -> list[tuple[list[tuple[str, slice]], Samples]]:

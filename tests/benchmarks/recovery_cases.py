@@ -38,7 +38,7 @@ def mesh_points(name, n, dim, seed=1):
     noise *= 0.0 if name == "uniform" else SHIFT[dim]
     x = (axes + inner[:, None] * noise) / n
     if name == "graded":
-        x = 0.3 * x + 0.7 * x**2
+        x = 0.5 * (x + x**2)
     return x, cells
 
 

@@ -143,7 +143,7 @@ def test_a_region_of_one_layer_of_cells_falls_back_without_reaching_across():
     u = np.where(mesh.points[:, 0] > 0.55, 100.0 * (mesh.points[:, 0] - 0.5), 0.0)
     H = metric.recover_hessian(mesh, u)
     assert np.abs(H).max() < 1e-6
-    with pytest.raises(ValueError, match="no well conditioned patch .* or a region of it"):
+    with pytest.raises(ValueError, match=r"no well conditioned patch .* or a region of it"):
         metric.recover_hessian(mesh, u, method="quadratic")
 
 
