@@ -2,132 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..graph import VertexGraph, wide_graph
-from ..mesh import MeshLike
-from .boundary import Boundary, boundary_of
-from .cells import CellGeometry, cell_geometry
-from .cut import CutMesh, cut_open
-from .fit import LAST_PIVOT, PATCH_LEVELS, SMALLEST_PIVOT, Cloud, Fits, covariances, fit_patches
-from .noise import (
-    NOISE_GAIN,
-    NOISE_MARGIN,
-    P2_NOISE_GAIN,
-    ROUNDOFF,
-    WEAK_NOISE_GAIN,
-    damped,
-    estimated_noise,
-    hessian_norm,
-)
-from .options import EXTRAPOLATED, RecoveryOptions
-from .projection import L2Projection, PatchProjection, Projection
-from .quadratic import quadratic_cloud
-from .spaces import QuadraticCells, Samples, on_cut, quadratic_cells
+from .fit import LAST_PIVOT, SMALLEST_PIVOT, Fits, covariances, fit_patches
+from .larger_patches import grow_against_noise, is_measurable
+from .noise import NOISE_MARGIN, ROUNDOFF, damped, estimated_noise, hessian_norm
+from .projection import L2Projection
+from .setting import Setting
 from .weak import weak_hessian
 
 Array = NDArray[np.float64]
 
 QUADRATIC, LINEAR = 2, 1
 """Orders: a quadratic was fitted, or gradients were projected twice."""
-
-MEASURABLE_NOISE = 2e-15
-"""Noise relative to the values from which it is more than round-off."""
-
-CLEAR_SIGNAL = 5.0
-"""Hessians this many times above the noise need no larger patch."""
-
-LARGEST_GROWTH = 3
-"""Highest level to which patches are grown against noise."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Setting:
-    """A cut mesh with samples on it, and what the methods need of it, computed once."""
-
-    cut: CutMesh
-    samples: Samples
-    options: RecoveryOptions
-    given_graph: VertexGraph | None
-
-    @cached_property
-    def graph(self) -> VertexGraph:
-        """The wide graph of the cut mesh."""
-        return self.given_graph if self.given_graph is not None else wide_graph(self.cut)
-
-    @cached_property
-    def boundary(self) -> Boundary:
-        """The boundary of the cut mesh, interfaces included."""
-        return boundary_of(self.geometry)
-
-    @cached_property
-    def geometry(self) -> CellGeometry:
-        """The geometry of the cells."""
-        return cell_geometry(self.cut)
-
-    @cached_property
-    def cloud(self) -> Cloud:
-        """What quadratics are fitted to."""
-        return quadratic_cloud(self.geometry, self.graph, self.samples)
-
-    @property
-    def levels(self) -> range:
-        """How often patches for quadratics are grown; six cells would just determine one."""
-        return range(1 if self.samples.space == "P0" else 0, PATCH_LEVELS)
-
-    @property
-    def noise_gain(self) -> float:
-        """The norm of the Hessian that noise of standard deviation one makes."""
-        if self.method in ("green", "mixed_l2") and self.samples.space != "P2":
-            return WEAK_NOISE_GAIN
-        return P2_NOISE_GAIN if self.samples.space == "P2" else NOISE_GAIN
-
-    @cached_property
-    def p2_functions(self) -> QuadraticCells:
-        """The P2 functions of the samples in the cells."""
-        return quadratic_cells(self.geometry, self.samples)
-
-    @property
-    def method(self) -> str:
-        """The method, chosen by the space for ``auto`` from the table in the documentation.
-
-        P2 functions have second derivatives in the cells, which ``zz`` fits with half the
-        error of a quadratic through the nodes.
-        """
-        if self.options.method != "auto":
-            return self.options.method
-        return "zz" if self.samples.space == "P2" else "quadratic"
-
-    @property
-    def is_extrapolated(self) -> bool:
-        """Whether values at the boundary are extrapolated."""
-        if self.options.boundary == "auto":
-            return self.method in EXTRAPOLATED
-        return self.options.boundary == "extrapolated"
-
-    @cached_property
-    def projection(self) -> Projection:
-        """The projection by which the method turns values in cells into point values."""
-        consistent = self.method == "mixed_l2" or (
-            self.method == "l2" and self.options.mass == "consistent"
-        )
-        l2 = L2Projection(geometry=self.geometry, is_consistent=consistent)
-        if self.method in ("l2", "mixed_l2", "green"):
-            return l2
-        by_volume = self.method == "clement"
-        return PatchProjection(geometry=self.geometry, by_volume=by_volume, fallback=l2)
-
-    def bounded(self, values: Array) -> Array:
-        """Apply the boundary treatment to point values (n, ...)."""
-        return self.boundary.extrapolated(values) if self.is_extrapolated else values
-
-    def by(self, method: str) -> Setting:
-        """Return the same setting with another method."""
-        return replace(self, options=replace(self.options, method=method), given_graph=self.graph)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,20 +61,6 @@ class RecoveredHessian:
         return damped(self.hessian, self.covariance, self.threshold)
 
 
-def setting_of(
-    mesh: MeshLike, samples: Samples, options: RecoveryOptions, graph: VertexGraph | None = None
-) -> Setting:
-    """Cut `mesh` open and put the samples on it; `graph` is its wide graph, if known."""
-    cut = cut_open(mesh, interfaces=options.interfaces)
-    is_cut = len(cut.origin) > cut.n_given
-    return Setting(
-        cut=cut,
-        samples=on_cut(samples, cut),
-        options=options,
-        given_graph=None if is_cut else graph,
-    )
-
-
 def recovered_gradient(setting: Setting) -> Array:
     """Gradients (N, k, d) by the method of the setting."""
     if setting.method == "quadratic":
@@ -208,7 +85,7 @@ def recovered_hessian(setting: Setting, noise: Array | None = None) -> Recovered
     """Hessians by the method of the setting, with the means to damp noise (k,)."""
     points, N = setting.cut.points, len(setting.cut.points)
     noise = _noise(setting) if noise is None else noise
-    is_measurable = _is_measurable(setting, noise)
+    is_noisy = is_measurable(setting, noise)
     if setting.method != "quadratic":
         graph = setting.graph
         v = points[graph.neighbours] - points[graph.sources]
@@ -222,9 +99,9 @@ def recovered_hessian(setting: Setting, noise: Array | None = None) -> Recovered
             threshold=_roundoff(setting) + setting.noise_gain * noise,
             noise=noise,
         )
-    fits = _fitted(setting, with_gain=is_measurable)
-    if setting.options.method == "auto" and is_measurable:
-        _grow_against_noise(setting, fits, noise)
+    fits = _fitted(setting, with_gain=is_noisy)
+    if setting.options.method == "auto" and is_noisy:
+        grow_against_noise(setting, fits, noise)
     return RecoveredHessian(
         hessian=_fitted_hessian(setting, fits),
         order=np.where(fits.level < 0, LINEAR, QUADRATIC).astype(np.int8),
@@ -355,47 +232,3 @@ def _roundoff(setting: Setting) -> Array:
     if setting.samples.space != "P0":
         size = np.maximum(size, values[: len(size)])
     return np.asarray(ROUNDOFF * size)
-
-
-def _is_measurable(setting: Setting, noise: Array) -> bool:
-    size = np.abs(setting.samples.columns).max(axis=0, initial=0.0)
-    return bool((noise > MEASURABLE_NOISE * size).any())
-
-
-def _grow_against_noise(setting: Setting, fits: Fits, noise: Array) -> None:
-    """Take larger patches where the signal is weak and the larger patch does not deny it.
-
-    A larger patch has less noise and more features that a quadratic cannot follow. It is taken
-    as long as the Hessian that it gives differs from the previous one by no more than noise can
-    explain, which is the rule of Lepskii [1]_.
-
-    References
-    ----------
-    .. [1] Lepskii, On a problem of adaptive estimation in Gaussian white noise, Theory of
-       Probability and its Applications 35, 1990.
-    """
-    active = np.flatnonzero(fits.level >= 0)
-    for _ in range(LARGEST_GROWTH):
-        threshold = NOISE_MARGIN * fits.gain[:, None] * noise
-        norm = hessian_norm(fits.hessian[active], fits.covariance[active])
-        is_weak = (norm < CLEAR_SIGNAL * threshold[active]).any(axis=1)
-        active = active[is_weak & (fits.level[active] < LARGEST_GROWTH)]
-        taken = []
-        for level in np.unique(fits.level[active]):
-            rows = active[fits.level[active] == level]
-            grown = fit_patches(
-                setting.cut.points,
-                setting.cloud,
-                setting.graph.matrix(),
-                degree=2,
-                rows=rows,
-                levels=(int(level) + 1,),
-                with_gain=True,
-            )
-            change = hessian_norm(grown.hessian - fits.hessian[rows], fits.covariance[rows])
-            is_explained = (change <= threshold[rows]).all(axis=1) & (grown.level >= 0)
-            fits.put(rows[is_explained], grown, is_explained)
-            taken.append(rows[is_explained])
-        if not taken:
-            break
-        active = np.concatenate(taken)

@@ -15,14 +15,13 @@ from .confidence import RecoveryConfidence
 from .cut import joined_gradients, joined_hessians, joined_worst
 from .methods import (
     RecoveredHessian,
-    Setting,
     hessian_as_found,
     recovered_gradient,
     recovered_hessian,
-    setting_of,
 )
 from .noise import hessian_norm
 from .options import RecoveryOptions
+from .setting import Setting, setting_of
 from .spaces import Samples, grouped, read_fields, read_samples
 
 Array = NDArray[np.float64]
