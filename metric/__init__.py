@@ -17,15 +17,26 @@ from .mesh import MeshLike
 from .normalisation import normalised
 from .options import MetricOptions
 from .pipeline import from_fields
-from .recovery import recover_hessian
+from .recovery import (
+    METHODS,
+    RecoveryConfidence,
+    RecoveryOptions,
+    p2_nodes,
+    recover_gradient,
+    recover_hessian,
+    recovery_confidence,
+)
 from .sizes import from_sizes
 
 __all__ = [
     "ELEMENTS_PER_COMPLEXITY",
+    "METHODS",
     "Ledger",
     "MeshLike",
     "MetricError",
     "MetricOptions",
+    "RecoveryConfidence",
+    "RecoveryOptions",
     "Stage",
     "absolute",
     "bounded",
@@ -42,6 +53,9 @@ __all__ = [
     "mean",
     "mesh_edges",
     "normalised",
+    "p2_nodes",
+    "recover_gradient",
     "recover_hessian",
+    "recovery_confidence",
     "sqrt_metric",
 ]

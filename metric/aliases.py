@@ -10,6 +10,9 @@ PETSC_PREFIX = "dm_plex_metric"
 #: Mmg's spelling of an option of the metric, and ours.
 MMG_ALIASES = {"hmin": "h_min", "hmax": "h_max", "hgrad": "gradation_factor"}
 
+#: Another word of ours for an option.
+SYNONYMS = {"recovery": "method"}
+
 
 def flattened(options: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """Yield names and values with PETSc's group ``{"dm_plex_metric": {...}}`` opened.
@@ -30,7 +33,8 @@ def flattened(options: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 def our_name(given: str, mmg: Mapping[str, str] = MMG_ALIASES) -> str:
     """Return our name of an option that may be PETSc's or Mmg's."""
-    return mmg.get(given, given.removeprefix(PETSC_PREFIX + "_"))
+    name = mmg.get(given, given.removeprefix(PETSC_PREFIX + "_"))
+    return SYNONYMS.get(name, name)
 
 
 def our_value(name: str, value: Any) -> Any:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -87,8 +84,12 @@ def check_tensors(
     return np.ascontiguousarray(0.5 * (tensors + transposed))
 
 
-def check_values(values: ArrayLike, *, n_points: int, name: str) -> NDArray[np.float64]:
-    """Return point values (n,) or (n, k) as float64, or raise naming the field and the point.
+def check_values(
+    values: ArrayLike, *, n_points: int, name: str, what: str = "points"
+) -> NDArray[np.float64]:
+    """Return values (n,) or (n, k) as float64, or raise naming the field and the point.
+
+    `what` says what there are `n_points` of: points, cells, or points and edges.
 
     Raises
     ------
@@ -100,40 +101,15 @@ def check_values(values: ArrayLike, *, n_points: int, name: str) -> NDArray[np.f
         raise ValueError(f"field '{name}' has shape {array.shape}: not a scalar or a vector")
     if len(array) != n_points:
         raise ValueError(
-            f"field '{name}' has shape {array.shape} but the mesh has {n_points} points"
+            f"field '{name}' has shape {array.shape} but the mesh has {n_points} {what}"
         )
     rows = array.reshape(n_points, -1)
     bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
     if bad.size:
         value = rows[bad[0]][~np.isfinite(rows[bad[0]])][0]
-        raise ValueError(f"field '{name}' at point {bad[0]} is not finite: {value}{_others(bad)}")
+        place = "cell" if what == "cells" else "point"
+        raise ValueError(f"field '{name}' at {place} {bad[0]} is not finite: {value}{_others(bad)}")
     return array
-
-
-def check_fields(mesh_points: int, fields: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
-    """Return the point values of `fields`, each (n, k), from arrays or Field-like objects.
-
-    Raises
-    ------
-    TypeError
-        If `fields` is not a mapping.
-    ValueError
-        If there is no field, or one is not a scalar or a vector at the points.
-    """
-    if not isinstance(fields, Mapping):
-        raise TypeError(f"fields must be a dict of name to values, got {type(fields).__name__}")
-    if not fields:
-        raise ValueError("a metric needs at least one field, got none")
-    columns = {}
-    for name, field in fields.items():
-        place, kind = getattr(field, "on", "points"), getattr(field, "kind", "scalar")
-        if place != "points":
-            raise ValueError(f"field '{name}' is on {place}: the metric needs values at points")
-        if kind not in ("scalar", "vector"):
-            raise ValueError(f"field '{name}' is a {kind}: the metric needs a scalar or a vector")
-        values = check_values(getattr(field, "values", field), n_points=mesh_points, name=name)
-        columns[name] = values.reshape(mesh_points, -1)
-    return columns
 
 
 def _others(bad: NDArray[np.intp]) -> str:

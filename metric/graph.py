@@ -58,7 +58,12 @@ def mesh_edges(mesh: MeshLike) -> Index:
 
 def edge_graph(mesh: MeshLike) -> VertexGraph:
     """Return the graph of the mesh edges."""
-    return _graph(len(mesh.points), _edge_pairs(mesh.cells))
+    return pair_graph(len(mesh.points), mesh.cells)
+
+
+def pair_graph(n_points: int, cells: Index) -> VertexGraph:
+    """Return the graph of the edges of some cells among `n_points` points."""
+    return _graph(n_points, _edge_pairs(cells))
 
 
 def wide_graph(mesh: MeshLike) -> VertexGraph:

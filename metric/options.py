@@ -14,7 +14,7 @@ from .bounds import check_bounds
 from .complexity import ELEMENTS_PER_COMPLEXITY
 from .gradation import DEFAULT_FACTORS, check_gradation
 from .normalisation import check_normalisation
-from .recovery import check_method
+from .recovery import RecoveryOptions
 
 Bound = float | NDArray[np.float64] | None
 
@@ -41,8 +41,10 @@ class MetricOptions:
         Growth of sizes from one unit edge to the next; "auto" is 1.5 in 2D and 1.3 in 3D.
     gradation_model : {"physical", "metric", "mixed"}
         Law of the growth, see `graded`.
-    method : {"auto", "quadratic", "l2"}
+    method : {"auto", "quadratic", "l2", "mixed_l2", "zz", "clement", "green"}
         Recovery of the Hessian, see `recover_hessian`.
+    recovery_mass, recovery_boundary, interfaces, noise
+        Further options of the recovery, see `RecoveryOptions`.
     """
 
     target_complexity: float | None = None
@@ -54,6 +56,10 @@ class MetricOptions:
     gradation_factor: float | str | None = "auto"
     gradation_model: str = "physical"
     method: str = "auto"
+    recovery_mass: str = "lumped"
+    recovery_boundary: str = "auto"
+    interfaces: bool = True
+    noise: float | None = None
 
     def __post_init__(self) -> None:
         if self.target_complexity is not None and self.target_elements is not None:
@@ -73,7 +79,18 @@ class MetricOptions:
         if isinstance(factor, str) and factor != "auto":
             raise ValueError(f"gradation_factor must be a number, None or 'auto', got {factor!r}")
         check_gradation(None if isinstance(factor, str) else factor, self.gradation_model)
-        check_method(self.method)
+        _ = self.recovery
+
+    @property
+    def recovery(self) -> RecoveryOptions:
+        """Return the options of the recovery."""
+        return RecoveryOptions(
+            method=self.method,
+            mass=self.recovery_mass,
+            boundary=self.recovery_boundary,
+            interfaces=self.interfaces,
+            noise=self.noise,
+        )
 
     @classmethod
     def from_dict(cls, options: Mapping[str, Any]) -> MetricOptions:

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from .algebra import absolute, log_determinant
 from .bounds import check_bounds, clipped
-from .checks import check_fields
 from .combination import intersected
 from .complexity import integral_of_exponential
 from .distortion import distortion
@@ -24,8 +23,7 @@ from .ledger import Ledger, Stage
 from .mesh import MeshLike, cell_volumes, diameter
 from .normalisation import SMALLEST_FLOOR, normalised
 from .options import MetricOptions
-from .recovery import recover_on
-from .recovery.roundoff import without_roundoff
+from .recovery import Samples, hessians_of_fields, read_fields
 from .rootfind import COMPLEXITY_TOLERANCE, Evaluation, rescaling
 
 Array = NDArray[np.float64]
@@ -72,12 +70,12 @@ def from_fields(
     .. [1] Loseille, Alauzet, Continuous mesh framework part II, SIAM Journal on Numerical
        Analysis 49, 2011.
     """
-    n, d = mesh.points.shape
-    columns = check_fields(n, fields)
+    d = mesh.points.shape[1]
+    samples = read_fields(mesh, fields)
     target = options.complexity_for(d)
     finishing = _finishing(mesh, options)
     parts, stages = [], []
-    for name, (H, remark) in _hessians(mesh, finishing.graph, columns, options.method).items():
+    for name, (H, remark) in _hessians(finishing, samples, options).items():
         size = finishing.h_max[:, 0]
         parts.append(normalised(mesh, H, target_complexity=target, p=options.p, h_max=size))
         stages.append(finishing.stage(f"normalised {name}", parts[-1], remark))
@@ -143,25 +141,14 @@ def _finishing(mesh: MeshLike, options: MetricOptions) -> _Finishing:
 
 
 def _hessians(
-    mesh: MeshLike, graph: VertexGraph, columns: Mapping[str, Array], method: str
+    finishing: _Finishing, fields: Mapping[str, Samples], options: MetricOptions
 ) -> dict[str, tuple[Array, str]]:
     """|H| of each field (n, d, d), components intersected, with a remark for the ledger."""
-    stacked = np.concatenate(list(columns.values()), axis=1)
-    # the size of the values has no meaning here, and squares of it must not overflow
-    scale = np.abs(stacked).max(axis=0, initial=0.0)
-    stacked = stacked / np.where(scale > 0.0, scale, 1.0)
-    H, projected = recover_on(mesh, graph, stacked, method)
-    H = without_roundoff(mesh.points, graph, stacked, H)
-    by_l2 = f"l2 at {np.count_nonzero(projected)} of {len(projected)} points"
-    found, first = {}, 0
-    for name, values in columns.items():
-        last = first + values.shape[1]
-        size = scale[first:last] / max(float(scale[first:last].max()), np.finfo(float).tiny)
-        part = H[:, first:last] * size[:, None, None]
-        largest = float(np.abs(part).max(initial=0.0))
-        remark = by_l2 if largest > 0.0 else "no second derivative above round-off: uniform"
-        found[name] = (_intersected_components(part, largest), remark)
-        first = last
+    recovered = hessians_of_fields(finishing.mesh, fields, options.recovery, finishing.graph)
+    found = {}
+    for name, field in recovered.items():
+        largest = float(np.abs(field.hessian).max(initial=0.0))
+        found[name] = (_intersected_components(field.hessian, largest), field.remark)
     return found
 
 

@@ -194,18 +194,14 @@ def adapt(
 def metric_field_names(
     fields: Mapping[str, Field], wanted: Sequence[str] | None
 ) -> tuple[str, ...]:
-    """Return the names of the fields that make the metric.
+    """Return the names of the fields that make the metric: those wanted, or all at the points.
 
     Raises
     ------
     ValueError
         If a wanted field is unknown or cannot make a metric, or if there is none.
     """
-    usable = tuple(
-        name
-        for name, field in fields.items()
-        if field.on == "points" and field.kind in ("scalar", "vector")
-    )
+    usable = tuple(name for name, field in fields.items() if field.kind in ("scalar", "vector"))
     for name in wanted or ():
         if name not in fields:
             raise ValueError(f"unknown field {name!r}; the fields are: {_listed(fields)}")
@@ -213,9 +209,10 @@ def metric_field_names(
             field = fields[name]
             raise ValueError(
                 f"field {name!r} is a {field.kind} on {field.on}: a metric needs a scalar or a "
-                "vector at the points"
+                "vector"
             )
-    names = tuple(wanted) if wanted is not None else usable
+    at_points = tuple(name for name in usable if fields[name].on == "points")
+    names = tuple(wanted) if wanted is not None else at_points
     if not names:
         raise ValueError(
             "no scalar or vector field at the points to make a metric of; the fields are: "

@@ -193,7 +193,7 @@ class TestOptionsFromPlainNames:
             ({"zzz": 1.0}, "unknown option 'zzz': options: a_max,"),
             ({"hmin": 1.0, "h_min": 2.0}, "option 'h_min' is given twice"),
             ({"h_min": -1.0}, "h_min"),
-            ({"method": "magic"}, "recovery method must be one of auto, quadratic, l2"),
+            ({"method": "magic"}, "recovery method must be one of auto, quadratic, l2, mixed"),
             ({"transfer": {"h_min": 1.0}}, "unknown option 'h_min'"),
         ],
     )

@@ -63,7 +63,7 @@ CASES = {
     ),
     "unknown recovery": (
         "adapt in.vtu -o o.vtu --target-complexity 9 --method magic",
-        "recovery method must be one of auto, quadratic, l2, got 'magic'",
+        "recovery method must be one of auto, quadratic, l2, mixed_l2, zz, clement, green, got",
     ),
     "out of bounds": ("adapt in.vtu -o o.vtu --target-complexity -3", "target_complexity"),
     "no target": ("adapt in.vtu -o o.vtu", "target_complexity or target_elements"),

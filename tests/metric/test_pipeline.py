@@ -112,7 +112,7 @@ def test_objects_with_values_are_read_as_fields():
     M, _ = from_fields(mesh, {"u": field}, options)
     assert np.array_equal(M, from_fields(mesh, {"u": layer(mesh)}, options)[0])
     for wrong, message in [
-        ({"on": "cells"}, "field 'u' is on cells: the metric needs values at points"),
+        ({"on": "cells"}, r"field 'u' has shape \(121,\) but the mesh has 200 cells"),
         ({"kind": "label"}, "field 'u' is a label: the metric needs a scalar or a vector"),
     ]:
         with pytest.raises(ValueError, match=message):
@@ -205,7 +205,10 @@ def test_unknown_and_doubled_options_are_named():
         ({"gradation_factor": 0.9}, "gradation factor must be above 1 .* got 0.9"),
         ({"gradation_factor": "off"}, "must be a number, None or 'auto', got 'off'"),
         ({"gradation_model": "fast"}, "gradation model must be one of .* got 'fast'"),
-        ({"method": "zz"}, "recovery method must be one of .* got 'zz'"),
+        ({"method": "best"}, "recovery method must be one of .* got 'best'"),
+        ({"recovery_mass": "none"}, "mass must be one of lumped, consistent, got 'none'"),
+        ({"recovery_boundary": "?"}, "boundary recovery must be one of auto, .* got '[?]'"),
+        ({"noise": -1.0}, "noise must be finite and at least 0, got -1.0"),
     ],
 )
 def test_options_out_of_range_are_refused_with_the_value(options, message):

@@ -16,7 +16,7 @@ def quadratic(points):
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("shift", [0.0, 0.3])
-@pytest.mark.parametrize("aspect", [1.0, 1e3])
+@pytest.mark.parametrize("aspect", [1.0, 1e4])
 def test_the_quadratic_fit_is_exact_on_quadratics_up_to_the_boundary(dim, shift, aspect):
     mesh = stretched(box(6, dim, shift), [1.0] * (dim - 1) + [1.0 / aspect])
     local = mesh.points * ([1.0] * (dim - 1) + [aspect])
@@ -81,20 +81,6 @@ def test_the_quadratic_fit_converges_in_3d():
     assert orders(boundary, sizes)[-1] > 0.7
 
 
-def test_the_l2_projection_converges_inside_a_grid_but_not_at_its_boundary():
-    sizes = np.array([16, 32, 64])
-    _, boundary = errors("l2", sizes, 2, 0.0)
-    assert orders(boundary, sizes)[-1] < 0.5
-    deep = []
-    for n in sizes:
-        mesh = box(n, 2)
-        u, H = tanh_layer(mesh.points, 3.0)
-        far = np.minimum(mesh.points, 1 - mesh.points).min(axis=1) > 2.5 / n
-        error = metric.recover_hessian(mesh, u, method="l2")[far] - H[far]
-        deep.append(np.sqrt(np.mean(error**2)))
-    assert orders(np.array(deep), sizes)[-1] > 1.7
-
-
 def test_auto_falls_back_to_l2_where_no_patch_is_well_conditioned():
     square = from_arrays(np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]), [[0, 1, 2], [0, 2, 3]])
     u = square.points[:, 0] ** 2
@@ -112,5 +98,5 @@ def test_bad_values_are_named():
         metric.recover_hessian(mesh, u)
     with pytest.raises(ValueError, match=r"field 'u' has shape \(15,\) but the mesh has 16 points"):
         metric.recover_hessian(mesh, u[:15])
-    with pytest.raises(ValueError, match="must be one of auto, quadratic, l2, got 'best'"):
+    with pytest.raises(ValueError, match=r"must be one of auto, .*, green, got 'best'"):
         metric.recover_hessian(mesh, u, method="best")

@@ -40,6 +40,13 @@ def _listed(text: str, kind: Callable[[str], Number], what: str) -> tuple[Number
         raise argparse.ArgumentTypeError(f"{text!r} is no list of {what} like 1,2,3") from error
 
 
+def _switch(text: str) -> bool:
+    """Parse on or off."""
+    if text not in ("on", "off"):
+        raise argparse.ArgumentTypeError(f"must be on or off, not {text!r}")
+    return text == "on"
+
+
 _METRIC: dict[str, tuple[Any, str]] = {
     "target_complexity": (
         float,
@@ -55,7 +62,15 @@ _METRIC: dict[str, tuple[Any, str]] = {
         "growth of sizes from edge to edge, or off, or auto (Mmg: -hgrad)",
     ),
     "gradation_model": (str, "physical, metric or mixed"),
-    "method": (str, "recovery of the Hessian: auto, quadratic or l2"),
+    "method": (
+        str,
+        "recovery of the Hessian: auto, quadratic, l2, mixed_l2, zz, clement or green; also "
+        "--recovery",
+    ),
+    "recovery_mass": (str, "mass matrix of l2: lumped or consistent"),
+    "recovery_boundary": (str, "at the boundary: auto, one_sided or extrapolated"),
+    "interfaces": (_switch, "recover the sides of interfaces apart: on (default) or off"),
+    "noise": (float, "standard deviation of the values; estimated if not given"),
 }
 
 

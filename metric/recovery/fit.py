@@ -1,0 +1,393 @@
+"""Weighted least squares fits of polynomials over patches of samples, many at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from itertools import combinations_with_replacement
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from ..algebra import eigh
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+PATCH_LEVELS = 4
+"""A patch is grown by the neighbours of its points up to this many times less one."""
+
+SMALLEST_PIVOT = 1e-3
+"""A pivot of the scaled normal matrix is the squared sine of the angle between a basis
+function and the span of the previous ones over the patch. Regular patches, one-sided ones
+of two layers included, stay above 1e-2; patches that lie on a conic fall to round-off."""
+
+LAST_PIVOT = 1e-8
+"""Taken where no patch reaches `SMALLEST_PIVOT`: half of the digits are left."""
+
+FLATTEST_PATCH = 1e-12
+"""Smallest ratio of the extents squared of a patch; below, its points are on a line."""
+
+BLOCK = 16384
+"""Vertices fitted at once, so that the arrays of a block stay in the cache; a quarter of it
+for each level that a patch was grown."""
+
+
+LEAST_FREEDOM = 3
+"""Samples beyond the number of unknowns from which a residual says something."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cloud:
+    """Samples of k functions, and which of them each vertex looks at first.
+
+    Attributes
+    ----------
+    positions : ndarray (s, d)
+        Where the samples are: points, or centroids of cells.
+    values : ndarray (s, k)
+        Values there, or means over the cells.
+    first : csr_array (n, s)
+        The patch of each of the n vertices before it is grown, as nonzero entries.
+    spread : ndarray (s, d, d), optional
+        For means over cells: the mean of ``(x - c) (x - c)^T`` over the cell.
+    weights : ndarray (s,), optional
+        Weights of the equations; by the distance to the vertex if None.
+    at_vertices : ndarray (n, k), optional
+        Values at the vertices; the fits then pass through them.
+    """
+
+    positions: Array
+    values: Array
+    first: sparse.csr_array
+    spread: Array | None = None
+    weights: Array | None = None
+    at_vertices: Array | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fits:
+    """Polynomials fitted around r vertices.
+
+    Attributes
+    ----------
+    value : ndarray (r, k)
+    gradient : ndarray (r, k, d)
+    hessian : ndarray (r, k, d, d)
+        Of the fitted polynomial at the vertex; zero where there is no fit.
+    pivot : ndarray (r,)
+        The smallest pivot of the patch that was taken, 0 where there is no fit.
+    level : ndarray (r,) of int8
+        How often the patch was grown, -1 where there is no fit.
+    covariance : ndarray (r, d, d)
+        Of the positions of the samples, seen from the vertex, in length**2.
+    gain : ndarray (r,)
+        Root mean square of the norm of the Hessian, measured with the covariance, that noise
+        of standard deviation one makes; zero if it was not asked for.
+    residual : ndarray (r, k)
+        Standard deviation that the fit leaves, NaN where there are too few samples to say.
+    """
+
+    value: Array
+    gradient: Array
+    hessian: Array
+    pivot: Array
+    level: NDArray[np.int8]
+    covariance: Array
+    gain: Array
+    residual: Array
+
+    def put(self, where: Rows, other: Fits, chosen: NDArray[np.bool_]) -> None:
+        """Overwrite the fits at `where` by the chosen ones of `other`."""
+        for array in fields(self):
+            getattr(self, array.name)[where] = getattr(other, array.name)[chosen]
+
+
+def fit_patches(
+    points: Array,
+    cloud: Cloud,
+    neighbours: sparse.csr_array,
+    *,
+    degree: int,
+    rows: Rows | None = None,
+    levels: Sequence[int] = range(PATCH_LEVELS),
+    pivots: Sequence[float] = (SMALLEST_PIVOT,),
+    with_residual: bool = False,
+    with_gain: bool = False,
+) -> Fits:
+    """Fit polynomials of `degree` around vertices, over patches grown until well conditioned.
+
+    Parameters
+    ----------
+    points : ndarray (n, d)
+        The vertices.
+    cloud : Cloud
+        What is fitted to.
+    neighbours : csr_array (n, n)
+        By which a patch grows.
+    degree : {1, 2}
+        Of the polynomials.
+    rows : ndarray (r,), optional
+        The vertices to fit around, all if None.
+    levels : sequence of int
+        How often to grow a patch, tried in this order.
+    pivots : sequence of float
+        The smallest pivots to accept, tried in this order.
+    with_residual : bool
+        Whether to compute the residuals.
+    with_gain : bool
+        Whether to compute the gains.
+
+    Notes
+    -----
+    Coordinates are scaled by the covariance of the patch, so that an anisotropic patch is as
+    well conditioned as a regular one.
+    """
+    rows = np.arange(len(points)) if rows is None else rows
+    fits = _empty(len(rows), cloud.values.shape[1], points.shape[1])
+    pending = np.arange(len(rows))
+    for smallest_pivot in pivots:
+        for level in levels:
+            step = max(BLOCK >> 2 * level, 64)
+            for start in range(0, len(pending), step):
+                part = pending[start : start + step]
+                patches = _patches(cloud.first, neighbours, rows[part], level)
+                found = _fit(points, cloud, rows[part], patches, degree, with_residual, with_gain)
+                found.level[:] = level
+                well = found.pivot > smallest_pivot
+                fits.put(part[well], found, well)
+            pending = pending[fits.level[pending] < 0]
+            if pending.size == 0:
+                return fits
+    return fits
+
+
+def _empty(r: int, k: int, d: int) -> Fits:
+    return Fits(
+        value=np.zeros((r, k)),
+        gradient=np.zeros((r, k, d)),
+        hessian=np.zeros((r, k, d, d)),
+        pivot=np.zeros(r),
+        level=np.full(r, -1, dtype=np.int8),
+        covariance=np.zeros((r, d, d)),
+        gain=np.zeros(r),
+        residual=np.full((r, k), np.nan),
+    )
+
+
+def _patches(
+    first: sparse.csr_array, neighbours: sparse.csr_array, rows: Rows, level: int
+) -> sparse.csr_array:
+    """Return the samples in the patches of `rows`, as the nonzero entries of a matrix."""
+    if level == 0:
+        return sparse.csr_array(first[rows])
+    ball = sparse.csr_array(
+        (np.ones(len(rows), dtype=np.int32), (np.arange(len(rows)), rows)),
+        shape=(len(rows), first.shape[0]),
+    )
+    for _ in range(level):
+        ball = ball @ neighbours + ball
+        ball.data[:] = 1  # only who is a member counts
+    return sparse.csr_array(ball @ first)
+
+
+def _fit(
+    points: Array,
+    cloud: Cloud,
+    rows: Rows,
+    patches: sparse.csr_array,
+    degree: int,
+    with_residual: bool,
+    with_gain: bool,
+) -> Fits:
+    """Fit around `rows`; patches with too few samples or on a line get the pivot 0."""
+    d, k = points.shape[1], cloud.values.shape[1]
+    fits = _empty(len(rows), k, d)
+    pairs = list(combinations_with_replacement(range(d), 2)) if degree == 2 else []
+    unknowns = d + len(pairs) + (cloud.at_vertices is None)
+    enough = np.diff(patches.indptr) >= unknowns
+    if not enough.any():
+        return fits
+    inside = np.repeat(enough, np.diff(patches.indptr))
+    counts, members = np.diff(patches.indptr)[enough], patches.indices[inside]
+    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    rows = rows[enough]
+    v = cloud.positions[members] - np.repeat(points[rows], counts, axis=0)
+    covariance = covariances(v, starts, counts)
+    scaling = _inverse_root(covariance)
+    per_member = np.repeat(scaling, counts, axis=0)
+    xi = np.einsum("qij,qj->iq", per_member, v)
+    basis = _basis(xi, pairs, cloud, members, per_member)
+    weight = _weight(xi, cloud, members)
+    if cloud.at_vertices is not None:
+        base = cloud.at_vertices[rows]
+    else:
+        base = np.add.reduceat(cloud.values[members], starts, axis=0) / counts[:, None]
+    rise = (cloud.values[members] - np.repeat(base, counts, axis=0)).T
+    if with_gain:
+        # the response to the value at the vertex, of which all the rises are differences
+        through = 0.0 if cloud.at_vertices is None else 1.0
+        rise = np.concatenate([rise, np.full((1, len(members)), through)])
+    coefficients, pivot, factor = _least_squares(basis, weight, rise, starts)
+    if with_gain:
+        fits.gain[enough] = _gain(
+            basis, weight, starts, factor, coefficients[:, -1], list(enumerate(pairs))
+        )
+        coefficients, rise = coefficients[:, :-1], rise[:-1]
+    if with_residual:
+        fits.residual[enough] = _residual(basis, coefficients, rise, starts, counts)
+    if cloud.at_vertices is None:
+        fits.value[enough] = base + coefficients[0].T
+        coefficients = coefficients[1:]
+    else:
+        fits.value[enough] = base
+    fits.gradient[enough] = np.einsum("ikn,nia->nka", coefficients[:d], scaling)
+    local = np.zeros((len(rows), k, d, d))
+    for c, (i, j) in zip(coefficients[d:], pairs, strict=True):
+        local[:, :, i, j] = local[:, :, j, i] = c.T
+    if pairs:
+        S = scaling[:, None]
+        fits.hessian[enough] = np.matmul(np.matmul(S, local), S)
+    fits.pivot[enough], fits.covariance[enough] = pivot, covariance
+    return fits
+
+
+def _basis(
+    xi: Array,
+    pairs: list[tuple[int, int]],
+    cloud: Cloud,
+    members: NDArray[np.int32],
+    scaling: Array,
+) -> list[Array]:
+    """Basis functions at the samples, such that coefficients are derivatives."""
+    basis = [*xi, *(xi[i] * xi[j] * (0.5 if i == j else 1.0) for i, j in pairs)]
+    if cloud.spread is not None and pairs:
+        spread = np.matmul(np.matmul(scaling, cloud.spread[members]), scaling)
+        for a, (i, j) in enumerate(pairs):
+            basis[len(xi) + a] += spread[:, i, j] * (0.5 if i == j else 1.0)
+    if cloud.at_vertices is None:
+        basis.insert(0, np.ones_like(xi[0]))
+    return basis
+
+
+def _weight(xi: Array, cloud: Cloud, members: NDArray[np.int32]) -> Array:
+    if cloud.weights is not None:
+        return np.asarray(cloud.weights[members])
+    distance = (xi**2).sum(axis=0)
+    if cloud.at_vertices is None:
+        return np.asarray(1.0 / (1.0 + distance))
+    # the vertex itself may be a member: its equation is 0 = 0 and must weigh nothing
+    return np.divide(1.0, distance, out=np.zeros_like(distance), where=distance > 0.0)
+
+
+def covariances(v: Array, starts: NDArray[Any], counts: NDArray[Any]) -> Array:
+    """Means (r, d, d) of ``v v^T`` over consecutive vectors (s, d)."""
+    d = v.shape[1]
+    result = np.empty((len(starts), d, d))
+    for i in range(d):
+        for j in range(i + 1):
+            entry = np.add.reduceat(v[:, i] * v[:, j], starts) / counts
+            result[:, i, j] = result[:, j, i] = entry
+    return result
+
+
+def _inverse_root(covariance: Array) -> Array:
+    values, vectors = eigh(covariance)
+    values = np.maximum(values, FLATTEST_PATCH * values[:, -1:])
+    root = vectors / np.sqrt(values)[:, None, :]
+    return np.asarray(np.matmul(root, vectors.transpose(0, 2, 1)))
+
+
+def _least_squares(
+    basis: list[Array], weight: Array, rise: Array, starts: NDArray[np.intp]
+) -> tuple[Array, Array, tuple[Array, Array]]:
+    """Coefficients (b, k, r) of the r fits, their smallest pivots (r,), and the factorisation.
+
+    The normal equations, scaled to a unit diagonal, by Cholesky factorisation of all the
+    patches at once: the loops are over the basis functions.
+    """
+    size, r, k = len(basis), len(starts), len(rise)
+    normal = np.empty((size, size, r))
+    right = np.empty((size, k, r))
+    for a in range(size):
+        weighted = weight * basis[a]
+        for b in range(a + 1):
+            normal[a, b] = np.add.reduceat(weighted * basis[b], starts)
+        for f in range(k):
+            right[a, f] = np.add.reduceat(weighted * rise[f], starts)
+    diagonal = np.array([normal[a, a] for a in range(size)])
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    pivot = np.where((diagonal > 0.0).all(axis=0), 1.0, 0.0)
+    for a in range(size):
+        for b in range(a + 1):
+            L = normal[a, b] * scale[a] * scale[b]
+            for c in range(b):
+                L -= normal[a, c] * normal[b, c]
+            if a == b:
+                pivot = np.minimum(pivot, L)
+                normal[a, a] = np.sqrt(np.maximum(L, LAST_PIVOT))
+            else:
+                normal[a, b] = L / normal[b, b]
+    coefficients = _substituted(normal, right * scale[:, None]) * scale[:, None]
+    return coefficients, pivot, (normal, scale)
+
+
+def _gain(
+    basis: list[Array],
+    weight: Array,
+    starts: NDArray[np.intp],
+    factor: tuple[Array, Array],
+    response: Array,
+    pairs: list[tuple[int, tuple[int, int]]],
+) -> Array:
+    """Root mean squares (r,) of the second derivatives that noise of the samples makes.
+
+    Exact would be ``N^-1 (sum w^2 phi phi^T) N^-1`` with the normal matrix N; the sum is
+    replaced by N times a mean weight, one for each basis function.
+    """
+    normal, scale = factor
+    first = len(basis) - len(pairs)
+    square = np.zeros(len(starts))
+    for c, (i, j) in pairs:
+        unit = np.zeros((len(basis), 1, len(starts)))
+        unit[first + c] = scale[first + c]
+        inverse = _substituted(normal, unit)[first + c, 0] * scale[first + c]
+        phi = weight * basis[first + c] ** 2
+        mean = np.add.reduceat(weight * phi, starts) / np.add.reduceat(phi, starts)
+        variance = inverse * mean + response[first + c] ** 2
+        square += variance * (1.0 if i == j else 2.0)
+    return np.asarray(np.sqrt(square))
+
+
+def _substituted(L: Array, right: Array) -> Array:
+    """Solve ``L L^T x = right`` for all patches, L (b, b, r) lower, right (b, k, r)."""
+    x, size = right, len(L)
+    for a in range(size):
+        for c in range(a):
+            x[a] -= L[a, c] * x[c]
+        x[a] /= L[a, a]
+    for a in reversed(range(size)):
+        for c in range(a + 1, size):
+            x[a] -= L[c, a] * x[c]
+        x[a] /= L[a, a]
+    return x
+
+
+def _residual(
+    basis: list[Array],
+    coefficients: Array,
+    rise: Array,
+    starts: NDArray[np.intp],
+    counts: NDArray[np.int32],
+) -> Array:
+    """Return the standard deviations (r, k) that the fits leave."""
+    left = rise.copy()
+    for phi, c in zip(basis, coefficients, strict=True):
+        left -= phi * np.repeat(c, counts, axis=1)
+    freedom = counts - len(basis)
+    square = np.add.reduceat(left**2, starts, axis=1)
+    enough = freedom >= LEAST_FREEDOM
+    variance = square / np.where(enough, freedom, 1)
+    return np.asarray(np.where(enough, np.sqrt(variance), np.nan).T)
