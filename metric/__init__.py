@@ -7,7 +7,7 @@ in 1 / length**2: an edge v should satisfy ``v^T M v = 1``.
 from .algebra import absolute, exp_metric, interpolated, log_metric, sqrt_metric
 from .bounds import bounded
 from .checks import MetricError, check_metric
-from .combination import intersected, mean
+from .combination import intersected, limited_step, mean
 from .complexity import ELEMENTS_PER_COMPLEXITY, complexity
 from .distortion import distortion
 from .gradation import graded
@@ -38,6 +38,7 @@ __all__ = [
     "graded",
     "interpolated",
     "intersected",
+    "limited_step",
     "log_metric",
     "mean",
     "mesh_edges",
