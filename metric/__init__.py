@@ -10,11 +10,13 @@ from .checks import MetricError, check_metric
 from .combination import intersected, limited_step, mean
 from .complexity import ELEMENTS_PER_COMPLEXITY, complexity
 from .distortion import distortion
+from .error_model import predicted_error
+from .estimate import Estimate, estimate
 from .gradation import graded
 from .graph import mesh_edges
 from .ledger import Ledger, Stage
 from .mesh import MeshLike
-from .normalisation import normalised
+from .normalisation import normalised, normalised_space_time
 from .options import MetricOptions
 from .pipeline import from_fields
 from .recovery import recover_hessian
@@ -22,6 +24,7 @@ from .sizes import from_sizes
 
 __all__ = [
     "ELEMENTS_PER_COMPLEXITY",
+    "Estimate",
     "Ledger",
     "MeshLike",
     "MetricError",
@@ -32,6 +35,7 @@ __all__ = [
     "check_metric",
     "complexity",
     "distortion",
+    "estimate",
     "exp_metric",
     "from_fields",
     "from_sizes",
@@ -43,6 +47,8 @@ __all__ = [
     "mean",
     "mesh_edges",
     "normalised",
+    "normalised_space_time",
+    "predicted_error",
     "recover_hessian",
     "sqrt_metric",
 ]

@@ -1,0 +1,107 @@
+"""The Hessians that the pipeline works with, field by field."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .algebra import absolute, compose, eigh
+from .bounds import check_bounds
+from .combination import intersection_of
+from .error_model import predicted_error
+from .graph import VertexGraph
+from .mesh import MeshLike
+from .normalisation import SMALLEST_FLOOR
+from .options import MetricOptions
+from .recovery import recover_on
+from .recovery.roundoff import without_roundoff
+from .scaling import scales_of
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FieldHessian:
+    """The Hessians of the components of one field.
+
+    Attributes
+    ----------
+    components : ndarray (n, k, d, d)
+        With their signs, in `unit` / length**2.
+    absolute : ndarray (n, d, d)
+        The intersection of their absolute values, likewise.
+    unit : float
+        The largest value of the field, so that no square overflows.
+    scale : float
+        By what the field is divided to be compared with others.
+    remark : str
+        How they were recovered, for the ledger.
+    """
+
+    components: Array
+    absolute: Array
+    unit: float
+    scale: float
+    remark: str
+
+    def error(self, mesh: MeshLike, M: Array, p: float) -> float:
+        """Predicted Lp norm of the error on a unit mesh of `M`, over all components."""
+        parts = self.components.transpose(1, 0, 2, 3)
+        return self.unit * float(
+            np.linalg.norm([predicted_error(mesh, M, part, p=p) for part in parts], ord=p)
+        )
+
+
+def hessians_of(
+    mesh: MeshLike, graph: VertexGraph, columns: Mapping[str, Array], options: MetricOptions
+) -> dict[str, FieldHessian]:
+    """Recover the Hessians of checked fields, each (n, k)."""
+    stacked = np.concatenate(list(columns.values()), axis=1)
+    # the size of the values has no meaning here, and squares of it must not overflow
+    largest = np.abs(stacked).max(axis=0, initial=0.0)
+    stacked = stacked / np.where(largest > 0.0, largest, 1.0)
+    H, projected = recover_on(mesh, graph, stacked, options.method)
+    H = without_roundoff(mesh.points, graph, stacked, H)
+    if options.restrict_anisotropy_first and options.a_max is not None:
+        H = _with_anisotropy(mesh, H, options)
+    by_l2 = f"l2 at {np.count_nonzero(projected)} of {len(projected)} points"
+    scales = scales_of(columns, options.scale)
+    found, first = {}, 0
+    for name, values in columns.items():
+        last = first + values.shape[1]
+        unit = max(float(largest[first:last].max()), np.finfo(float).tiny)
+        part = H[:, first:last] * (largest[first:last] / unit)[:, None, None]
+        is_flat = not np.any(part)
+        found[name] = FieldHessian(
+            components=part,
+            absolute=_intersected_components(part, options.intersection_rule),
+            unit=unit,
+            scale=scales[name],
+            remark="no second derivative above round-off: uniform" if is_flat else by_l2,
+        )
+        first = last
+    return found
+
+
+def _with_anisotropy(mesh: MeshLike, H: Array, options: MetricOptions) -> Array:
+    """Raise small eigenvalues of `H` (n, k, d, d) by modulus to the largest over a_max**2."""
+    n, k, d, _ = H.shape
+    _, _, ratio = check_bounds(n, h_min=None, h_max=None, a_max=options.a_max, points=mesh.points)
+    assert ratio is not None  # it was given
+    values, vectors = eigh(H.reshape(-1, d, d))
+    largest = np.abs(values).max(axis=1, keepdims=True)
+    floor = largest / np.repeat(np.broadcast_to(ratio, (n, 1)), k, axis=0) ** 2
+    lifted = np.copysign(np.maximum(np.abs(values), floor), values)
+    return compose(lifted, vectors).reshape(H.shape)
+
+
+def _intersected_components(H: Array, rule: str) -> Array:
+    """Intersect the |H| of the components of one field (n, k, d, d)."""
+    largest = float(np.abs(H).max(initial=0.0))
+    if H.shape[1] == 1 or largest == 0.0:
+        return absolute(H[:, 0])
+    floor = SMALLEST_FLOOR * largest
+    return intersection_of([absolute(part, floor) for part in H.transpose(1, 0, 2, 3)], rule)
