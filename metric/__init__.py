@@ -9,17 +9,20 @@ from .bounds import bounded
 from .checks import MetricError, check_metric
 from .combination import intersected, limited_step, mean
 from .complexity import ELEMENTS_PER_COMPLEXITY, complexity
+from .curvature import curvature_metric
 from .distortion import distortion
 from .error_model import predicted_error
 from .estimate import Estimate, estimate
 from .gradation import graded
 from .graph import mesh_edges
+from .implied import implied_metric
 from .ledger import Ledger, Stage
 from .mesh import MeshLike
 from .normalisation import normalised, normalised_space_time
 from .options import MetricOptions
 from .pipeline import from_fields
 from .recovery import recover_hessian
+from .size_fields import size_in_box, size_near_boundary, size_near_points
 from .sizes import from_sizes
 
 __all__ = [
@@ -34,12 +37,14 @@ __all__ = [
     "bounded",
     "check_metric",
     "complexity",
+    "curvature_metric",
     "distortion",
     "estimate",
     "exp_metric",
     "from_fields",
     "from_sizes",
     "graded",
+    "implied_metric",
     "interpolated",
     "intersected",
     "limited_step",
@@ -50,5 +55,8 @@ __all__ = [
     "normalised_space_time",
     "predicted_error",
     "recover_hessian",
+    "size_in_box",
+    "size_near_boundary",
+    "size_near_points",
     "sqrt_metric",
 ]

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from .aliases import canonical
 from .fields import Field, as_fields
 from .mesh import Mesh
-from .metric import MetricOptions, from_fields
+from .metric import Ledger, MetricOptions, from_fields
 from .options import require
 from .remesh import RemeshOptions, remesh
 from .report import attributes
@@ -23,6 +23,14 @@ Floats = NDArray[np.float64]
 Projection = Callable[[Floats, int], Floats]
 
 STAGES = ("metric", "remesh", "transfer")
+
+#: Relative tolerance of `target_elements`, and what `max_elements` is undercut by, when the mesh
+#: is made again.
+ELEMENTS_TOLERANCE = 0.03
+CAP_MARGIN = 0.99
+
+#: How often at most.
+MAX_CORRECTIONS = 3
 
 
 def _transfer_to_a_remesh() -> TransferOptions:
@@ -113,6 +121,9 @@ class AdaptReport:
         What the mesher did.
     transfer : TransferReport
         What the transfer did.
+    corrections : int
+        How often the mesh was made again because it missed `target_elements` by more than 3 %
+        or exceeded `max_elements`.
     seconds : float
         Wall time of the whole adaptation.
     """
@@ -121,6 +132,7 @@ class AdaptReport:
     metric: Any
     remesh: Any
     transfer: TransferReport
+    corrections: int
     seconds: float
 
     def as_dict(self) -> dict[str, Any]:
@@ -178,17 +190,41 @@ def adapt(
     require(AdaptOptions, options=options)
     checked = as_fields(mesh, fields)
     names = metric_field_names(checked, options.metric_fields)
-    M, ledger = from_fields(mesh, {name: checked[name] for name in names}, options.metric)
-    done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
+    chosen = {name: checked[name] for name in names}
+    wanted, corrections = options.metric, 0
+    while True:
+        M, ledger = from_fields(mesh, chosen, wanted)
+        done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
+        corrected = _corrected(options.metric, wanted, ledger, done.mesh.n_cells)
+        if corrected is None or corrections == MAX_CORRECTIONS:
+            break
+        wanted, corrections = corrected, corrections + 1
     carried = transfer(mesh, fields, done.mesh, options.transfer)
     report = AdaptReport(
         metric_fields=names,
         metric=ledger,
         remesh=done.report,
         transfer=carried.report,
+        corrections=corrections,
         seconds=time.perf_counter() - started,
     )
     return Adapted(done.mesh, carried.fields, done.metric, report)
+
+
+def _corrected(
+    asked: MetricOptions, used: MetricOptions, ledger: Ledger, elements: int
+) -> MetricOptions | None:
+    """Return options that correct a count of elements that is off, None where it is right."""
+    cap, target = asked.max_elements, asked.target_elements
+    if cap is not None and elements > cap:
+        assert used.max_elements is not None  # it was asked for
+        return replace(used, max_elements=CAP_MARGIN * used.max_elements * cap / elements)
+    if target is None or ledger.capped or not ledger.reached:
+        return None
+    if abs(elements / target - 1.0) <= ELEMENTS_TOLERANCE:
+        return None
+    assert used.target_elements is not None  # it was asked for
+    return replace(used, target_elements=used.target_elements * target / elements)
 
 
 def metric_field_names(
