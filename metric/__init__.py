@@ -16,6 +16,7 @@ from .estimate import Estimate, estimate
 from .gradation import graded
 from .graph import mesh_edges
 from .implied import implied_metric
+from .instants import SpaceTimeLedger, from_instants
 from .ledger import Ledger, Stage
 from .mesh import MeshLike
 from .normalisation import normalised, normalised_space_time
@@ -32,6 +33,7 @@ __all__ = [
     "MeshLike",
     "MetricError",
     "MetricOptions",
+    "SpaceTimeLedger",
     "Stage",
     "absolute",
     "bounded",
@@ -42,6 +44,7 @@ __all__ = [
     "estimate",
     "exp_metric",
     "from_fields",
+    "from_instants",
     "from_sizes",
     "graded",
     "implied_metric",

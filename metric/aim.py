@@ -56,7 +56,7 @@ def aimed_at(
     expected = aimed.complexity * elements_per_complexity(finishing.mesh, aimed.growth.metric)
     if expected <= cap * (1.0 + COMPLEXITY_TOLERANCE):
         return aimed
-    capped = _at_elements(finishing, base, cap)
+    capped = _at_elements(finishing, base, cap * (1.0 - 2.0 * COMPLEXITY_TOLERANCE))
     return replace(
         capped,
         target=aimed.target,

@@ -18,7 +18,6 @@ from .normalisation import SMALLEST_FLOOR
 from .options import MetricOptions
 from .recovery import recover_on
 from .recovery.roundoff import without_roundoff
-from .scaling import scales_of
 
 Array = NDArray[np.float64]
 
@@ -56,7 +55,11 @@ class FieldHessian:
 
 
 def hessians_of(
-    mesh: MeshLike, graph: VertexGraph, columns: Mapping[str, Array], options: MetricOptions
+    mesh: MeshLike,
+    graph: VertexGraph,
+    columns: Mapping[str, Array],
+    options: MetricOptions,
+    scales: Mapping[str, float],
 ) -> dict[str, FieldHessian]:
     """Recover the Hessians of checked fields, each (n, k)."""
     stacked = np.concatenate(list(columns.values()), axis=1)
@@ -68,7 +71,6 @@ def hessians_of(
     if options.restrict_anisotropy_first and options.a_max is not None:
         H = _with_anisotropy(mesh, H, options)
     by_l2 = f"l2 at {np.count_nonzero(projected)} of {len(projected)} points"
-    scales = scales_of(columns, options.scale)
     found, first = {}, 0
     for name, values in columns.items():
         last = first + values.shape[1]

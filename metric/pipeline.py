@@ -21,6 +21,7 @@ from .ledger import Ledger, Stage
 from .mesh import MeshLike
 from .normalisation import SMALLEST_FLOOR, normalised
 from .options import MetricOptions
+from .scaling import scales_of
 
 Array = NDArray[np.float64]
 
@@ -72,7 +73,8 @@ def from_fields(
     columns = check_fields(n, fields)
     options.check_target()
     finishing = finishing_on(mesh, options)
-    found = hessians_of(mesh, finishing.graph, columns, options)
+    scales = scales_of(columns, options.scale)
+    found = hessians_of(mesh, finishing.graph, columns, options, scales)
     base, stages = _normalised_together(finishing, found, options)
     aimed = aimed_at(finishing, base, found, options)
     rescaled = aimed.factor * base
