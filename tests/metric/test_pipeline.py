@@ -133,7 +133,9 @@ def test_bad_fields_are_named():
     u[7] = np.nan
     with pytest.raises(ValueError, match="field 'u' at point 7 is not finite: nan"):
         from_fields(mesh, {"u": u}, options)
-    with pytest.raises(ValueError, match="give target_complexity, target_elements or target_error, got none"):
+    with pytest.raises(
+        ValueError, match="give target_complexity, target_elements or target_error, got none"
+    ):
         from_fields(mesh, {"u": layer(mesh)}, MetricOptions())
 
 
@@ -200,7 +202,10 @@ def test_unknown_and_doubled_options_are_named():
     [
         ({"target_complexity": 0.0}, "target_complexity must be positive, got 0.0"),
         ({"target_elements": -5}, "target_elements must be positive, got -5"),
-        ({"target_complexity": 1, "target_elements": 2}, "give one target, not several: got target_complexity = 1, target_elements"),
+        (
+            {"target_complexity": 1, "target_elements": 2},
+            "give one target, not several: got target_complexity = 1, target_elements",
+        ),
         ({"p": 0.0}, "p must be at least 1, got 0.0"),
         ({"h_min": 3.0, "h_max": 2.0}, "h_min = 3 exceeds h_max = 2"),
         ({"a_max": 0.1}, "a_max must be at least 1, got 0.1"),
