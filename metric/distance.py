@@ -61,4 +61,4 @@ def _to_triangle(x: Array, triangle: Array) -> Array:
     for start, end in ((a, b), (b, c), (c, a)):
         inside &= np.einsum("ni,ni->n", np.cross(end - start, x - start), normal) >= 0.0
     plane = np.abs(np.einsum("ni,ni->n", x - a, normal))
-    return np.where(inside, plane, np.minimum.reduce(sides))
+    return np.asarray(np.where(inside, plane, np.minimum.reduce(sides)))

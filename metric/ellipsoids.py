@@ -130,7 +130,7 @@ def _newton_step(X: Array, roots: Array, weight: Array, basis: Array) -> tuple[A
 def _curvature(A: Array, basis: Array) -> Array:
     """Sum over k of ``tr(A_k B_a A_k B_b)`` for A (n, k, d, d) and the basis B: (n, a, b)."""
     images = np.einsum("nkij,ajl->nkail", A, basis)
-    return np.einsum("nkail,nkbli->nab", images, images)
+    return np.asarray(np.einsum("nkail,nkbli->nab", images, images))
 
 
 def _symmetric_basis(d: int) -> Array:

@@ -72,7 +72,7 @@ def predicted_error(mesh: MeshLike, M: Array, H: Array, *, p: float = 2.0) -> fl
     if np.isinf(p) or largest == 0.0:
         return largest
     mass = point_volumes(mesh, cell_volumes(mesh))
-    return largest * float(np.dot(mass, (local / largest) ** p)) ** (1.0 / p)
+    return float(largest * np.dot(mass, (local / largest) ** p) ** (1.0 / p))
 
 
 def local_error(M: Array, H: Array) -> Array:
@@ -92,7 +92,7 @@ def norm_ratio(p: float, d: int) -> float:
     The error is proportional to ``sum_{i<j} b_i b_j`` in barycentric coordinates b.
     """
     if np.isinf(p):
-        return _shape(np.full((1, d + 1), 1.0 / (d + 1)))[0] / _power_mean(2.0, d)
+        return float(_shape(np.full((1, d + 1), 1.0 / (d + 1)))[0]) / _power_mean(2.0, d)
     return _power_mean(p, d) / _power_mean(2.0, d)
 
 

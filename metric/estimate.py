@@ -104,4 +104,4 @@ def _boundary(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
     """Edges (k, 2) that one triangle has alone."""
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     found, counts = np.unique(edges, axis=0, return_counts=True)
-    return found[counts == 1]
+    return np.asarray(found[counts == 1], dtype=np.int32)

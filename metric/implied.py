@@ -68,4 +68,4 @@ def _cell_metrics(mesh: MeshLike) -> Array:
     if flat.size:
         raise ValueError(f"cell {flat[0]} has no volume, so it implies no metric")
     to_unit = np.linalg.solve(edges, np.broadcast_to(UNIT_SIMPLEX[d], edges.shape))
-    return np.matmul(to_unit, to_unit.transpose(0, 2, 1))
+    return np.asarray(np.matmul(to_unit, to_unit.transpose(0, 2, 1)))

@@ -82,7 +82,7 @@ def size_in_box(
     d = mesh.points.shape[1]
     corners = np.array([low, high], dtype=np.float64)
     if corners.shape != (2, d) or not (corners[0] <= corners[1]).all():
-        raise ValueError(f"a box needs low <= high, each of {d} numbers, got {low} and {high}")
+        raise ValueError(f"a box needs low <= high, each of {d} numbers, got {low!r} and {high!r}")
     size = _check_sizes(h, 1)[0]
     outside = np.maximum(np.maximum(corners[0] - mesh.points, mesh.points - corners[1]), 0.0)
     return _grown(mesh, size, np.linalg.norm(outside, axis=1), growth, h_far)
