@@ -92,7 +92,9 @@ def check_repair(repair: str) -> None:
         raise ValueError(f"repair must be one of {', '.join(REPAIRS)}, got {repair!r}")
 
 
-def check_result(M: NDArray[np.float64], operation: str) -> NDArray[np.float64]:
+def check_result(
+    M: NDArray[np.float64], operation: str, *, stays_definite: bool = False
+) -> NDArray[np.float64]:
     """Return what an operation made of checked metrics, or raise naming it and the point.
 
     Sizes below 1e-154 or above 1e154 overflow when they are squared, and tensors whose
@@ -109,7 +111,7 @@ def check_result(M: NDArray[np.float64], operation: str) -> NDArray[np.float64]:
             f"{operation} gave a tensor that is not finite at point {bad[0]}: "
             f"{M[bad[0]].tolist()}{_others(bad)}"
         )
-    bad = _not_definite(M)
+    bad = np.empty(0, dtype=np.intp) if stays_definite else _not_definite(M)
     if bad.size:
         smallest = eigenvalues(M[bad[:1]])[0, 0]
         raise MetricError(

@@ -59,7 +59,8 @@ def intersected(M: Array, *others: Array, rule: str = "pairwise") -> Array:
         for k, other in enumerate(others)
     ]
     result = intersection_of([first, *rest], rule)
-    return check_result(result, "the intersection") if rest else result
+    # what an intersection adds is semidefinite
+    return check_result(result, "the intersection", stays_definite=True)
 
 
 def intersection_of(metrics: Sequence[Array], rule: str) -> Array:
