@@ -32,8 +32,7 @@ def intersected(M: Array, *others: Array, rule: str = "pairwise") -> Array:
     rule : {"pairwise", "john"}
         For more than two. ``pairwise``: the first two, then the result and the third, and so
         on; the result depends on the order. ``john``: the ellipsoid of largest volume inside
-        all unit balls, which is unique and never finer than it must be, for 5 to 50 times the
-        work.
+        all unit balls, which is unique, for some hundred times the work.
 
     Returns
     -------
