@@ -63,10 +63,16 @@ def read(path: Path, file_format: str | None = None) -> RawMesh:
         raise FormatError(f"cannot read {path}: no such file")
     with guarded("read", path):
         mesh = meshio.read(path, file_format=file_format)
-        raw = RawMesh(np.asarray(mesh.points, dtype=np.float64), _blocks(mesh))
-    raw.names = _names(path, mesh)
+        raw = content_of(mesh, path)
     suffix = suffix_of(path)
     raw.six = "xdmf" if suffix in _XDMF else "vtk" if suffix in _VTK else None
+    return raw
+
+
+def content_of(mesh: meshio.Mesh, path: Path) -> RawMesh:
+    """Return what a mesh in meshio's form says; errors name the path."""
+    raw = RawMesh(np.asarray(mesh.points, dtype=np.float64), _blocks(mesh))
+    raw.names = _names(path, mesh)
     raw.point_data = {name: data for name, data in mesh.point_data.items() if not is_reserved(name)}
     if _tag_key(mesh) is None:
         _add_cell_sets(mesh, raw)
