@@ -21,6 +21,9 @@ Array = NDArray[np.float64]
 ELEMENT_STEPS = 3
 """Corrections of the elements per complexity; they change by some per cent in the first."""
 
+SMALLEST_ERROR = 1e-12
+"""Errors below this share of the target are as good as none."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Aimed:
@@ -121,13 +124,15 @@ def _at_error(
             field.error(finishing.mesh, growth.metric, options.p) / field.scale
             for field in found.values()
         ]
-        return (max(*errors, np.finfo(float).tiny) / target) ** (-d / 2.0), growth
+        return (max(*errors, SMALLEST_ERROR * target) / target) ** (-d / 2.0), growth
 
     growth, best, evaluations = rescaling(attempt, 1.0, d)
     error = target * best.complexity ** (-2.0 / d)
-    reached = abs(best.complexity - 1.0) <= COMPLEXITY_TOLERANCE
+    reached = best.complexity >= 1.0 - COMPLEXITY_TOLERANCE
     complexity = finishing.complexity(growth.metric)
     message = f"predicted error {error:.3g} after {len(evaluations)} evaluations"
+    if best.complexity > 1.0 + COMPLEXITY_TOLERANCE:
+        message += f": the bounds and the gradation alone are finer than target error {target:.3g}"
     if not reached:
         message = (
             f"target error {target:.3g} is out of reach with these bounds and the gradation: "

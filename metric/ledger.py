@@ -26,7 +26,8 @@ class Ledger:
     target_complexity, complexity : float
         Asked, or aimed at for another target, and reached by the returned metric.
     reached : bool
-        Whether they agree within 0.1 %, and no cap acted.
+        Whether they agree within 0.1 %, or the predicted error is at most the target, and no cap
+        acted.
     capped : bool
         Whether `max_elements` acted.
     message : str

@@ -196,6 +196,16 @@ def test_an_error_out_of_reach_says_what_is_near():
     assert "target error 1e-09 is out of reach with these bounds" in ledger.message
 
 
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_linear_field_meets_any_error_with_the_largest_size(dim):
+    mesh = small(dim)
+    options = MetricOptions(target_error=1e-3, h_max=0.5)
+    M, ledger = from_fields(mesh, {"u": mesh.points[:, 0]}, options)
+    assert ledger.reached
+    assert "alone are finer than target error 0.001" in ledger.message
+    np.testing.assert_allclose(M, np.tile(4.0 * np.eye(dim), (len(M), 1, 1)), atol=1e-9)
+
+
 def test_a_cap_on_the_elements_acts_on_any_target_and_is_told():
     mesh = small(2)
     for target in ({"target_complexity": 1e4}, {"target_elements": 9e3}, {"target_error": 1e-6}):
