@@ -21,6 +21,9 @@ Array = NDArray[np.float64]
 ELEMENT_STEPS = 3
 """Corrections of the elements per complexity; they change by some per cent in the first."""
 
+CAP_SHARES = (0.998, 0.95, 0.8)
+"""Shares of a cap that are aimed at, until the expected count is below the cap."""
+
 SMALLEST_ERROR = 1e-12
 """Errors below this share of the target are as good as none."""
 
@@ -53,20 +56,33 @@ def aimed_at(
         aimed = _at_elements(finishing, base, options.target_elements)
     else:
         aimed = _at_complexity(finishing, base, options.complexity_for(d))
-    cap = options.max_elements
-    if cap is None:
+    if options.max_elements is None:
         return aimed
     expected = aimed.complexity * elements_per_complexity(finishing.mesh, aimed.growth.metric)
-    if expected <= cap * (1.0 + COMPLEXITY_TOLERANCE):
+    if expected <= options.max_elements * (1.0 + COMPLEXITY_TOLERANCE):
         return aimed
-    capped = _at_elements(finishing, base, cap * (1.0 - 2.0 * COMPLEXITY_TOLERANCE))
-    return replace(
-        capped,
-        target=aimed.target,
-        evaluations=aimed.evaluations + capped.evaluations,
-        reached=False,
-        capped=True,
-        message=f"the target needs {expected:.0f} elements: held to max_elements = {cap:g}",
+    return _capped(finishing, base, aimed, expected, options.max_elements)
+
+
+def _capped(finishing: Finishing, base: Array, aimed: Aimed, expected: float, cap: float) -> Aimed:
+    """Aim below the cap, or refuse: nobody wants to wait for a mesh that is too large."""
+    evaluations = aimed.evaluations
+    for share in CAP_SHARES:  # the complexity may jump over the first of them
+        lower = _at_elements(finishing, base, share * cap)
+        evaluations += lower.evaluations
+        elements = lower.complexity * elements_per_complexity(finishing.mesh, lower.growth.metric)
+        if elements <= cap:
+            return replace(
+                lower,
+                target=aimed.target,
+                evaluations=evaluations,
+                reached=False,
+                capped=True,
+                message=f"the target needs {expected:.0f} elements: held to max_elements = {cap:g}",
+            )
+    raise ValueError(
+        f"max_elements = {cap:g} cannot be kept: the bounds and the gradation alone need "
+        f"{elements:.0f} elements"
     )
 
 

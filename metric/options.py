@@ -34,7 +34,8 @@ class MetricOptions:
         error of any field, by `predicted_error`, in units of the field's `scale`.
     max_elements : float, optional
         Cap on the estimated number of elements, whatever the target; the ledger says when it
-        acted. `adapt` holds the mesh to it.
+        acted, and where bounds and gradation alone need more it is an error. `adapt` holds the
+        mesh to it.
     p : float
         Norm of the interpolation error to minimise, from 1 to infinity.
     scale : {"complexity", "range", "std", "none"}, float, or dict of field to these

@@ -62,7 +62,7 @@ def from_fields(
     ------
     TypeError, ValueError
         If a field is NaN somewhere, of the wrong length or kind, or a bound array does not
-        fit; the field and the point are named.
+        fit; the field and the point are named. If `max_elements` cannot be kept.
 
     References
     ----------

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .aliases import canonical
+from .errors import MeshingError
 from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import Ledger, MetricOptions, from_fields
 from .options import require
-from .remesh import RemeshOptions, remesh
+from .remesh import Remeshed, RemeshOptions, remesh
 from .report import attributes
 from .transfer import TransferOptions, TransferReport, transfer
 
@@ -183,7 +184,7 @@ def adapt(
     ValueError
         If a field does not fit the mesh, is unknown, or holds NaN where the metric needs it.
     MeshingError
-        If the mesher cannot finish.
+        If the mesher cannot finish, or cannot keep to `max_elements`.
     """
     started = time.perf_counter()
     options = options if options is not None else AdaptOptions()
@@ -191,14 +192,7 @@ def adapt(
     checked = as_fields(mesh, fields)
     names = metric_field_names(checked, options.metric_fields)
     chosen = {name: checked[name] for name in names}
-    wanted, corrections = options.metric, 0
-    while True:
-        M, ledger = from_fields(mesh, chosen, wanted)
-        done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
-        corrected = _corrected(options.metric, wanted, ledger, done.mesh.n_cells)
-        if corrected is None or corrections == MAX_CORRECTIONS:
-            break
-        wanted, corrections = corrected, corrections + 1
+    ledger, done, corrections = _to_count(mesh, chosen, options, geometry, project)
     carried = transfer(mesh, fields, done.mesh, options.transfer)
     report = AdaptReport(
         metric_fields=names,
@@ -209,6 +203,32 @@ def adapt(
         seconds=time.perf_counter() - started,
     )
     return Adapted(done.mesh, carried.fields, done.metric, report)
+
+
+def _to_count(
+    mesh: Mesh,
+    fields: Mapping[str, Field],
+    options: AdaptOptions,
+    geometry: Mesh | None,
+    project: Projection | None,
+) -> tuple[Ledger, Remeshed, int]:
+    """Make the mesh, again where its number of elements is off, and count how often."""
+    wanted = options.metric
+    for corrections in range(MAX_CORRECTIONS + 1):
+        M, ledger = from_fields(mesh, fields, wanted)
+        done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
+        corrected = _corrected(options.metric, wanted, ledger, done.mesh.n_cells)
+        if corrected is None or not done.report.converged:  # a budget stopped it: so would the next
+            return ledger, done, corrections
+        wanted = corrected
+    cap = options.metric.max_elements
+    if cap is not None and done.mesh.n_cells > cap:
+        raise MeshingError(
+            f"{done.mesh.n_cells} elements exceed max_elements = {cap:g} after "
+            f"{MAX_CORRECTIONS} corrections",
+            done.report,
+        )
+    return ledger, done, MAX_CORRECTIONS
 
 
 def _corrected(

@@ -239,3 +239,14 @@ def test_a_target_error_is_what_the_mesh_has():
         mesh = adapt(mesh, {"u": layer(mesh.points)}, asked).mesh
     assert validate(mesh) == []
     assert l2_error(mesh, layer(mesh.points), layer) == pytest.approx(error, rel=0.15)
+
+
+def test_a_mesh_that_a_budget_stopped_is_not_made_again():
+    mesh = square(8)
+    asked = AdaptOptions(
+        metric=MetricOptions(target_elements=5000), remesh=RemeshOptions(max_vertices=300)
+    )
+    done = adapt(mesh, {"u": layer(mesh.points)}, asked)
+    assert validate(done.mesh) == []
+    assert not done.report.remesh.converged
+    assert done.report.corrections == 0

@@ -219,6 +219,14 @@ def test_a_cap_on_the_elements_acts_on_any_target_and_is_told():
     assert not from_fields(mesh, {"u": layer(mesh)}, free)[1].capped
 
 
+def test_a_cap_that_the_bounds_exceed_is_refused_before_any_mesh_is_made():
+    mesh = small(2)
+    options = MetricOptions(target_complexity=1e4, max_elements=500.0, h_max=0.05)
+    message = "max_elements = 500 cannot be kept: the bounds and the gradation alone need 92[0-9]"
+    with pytest.raises(ValueError, match=message):
+        from_fields(mesh, {"u": layer(mesh)}, options)
+
+
 @pytest.mark.parametrize("scale", ["range", "std"])
 def test_scaled_fields_of_different_units_give_one_metric(scale):
     mesh = small(2)
