@@ -40,3 +40,14 @@ def test_mfem_finds_boundary_layers_at_a_fortieth_of_the_error(tmp_path):
     pytest.importorskip("anistar.adapters.mfem")
     rows = run("mfem/boundary_layer.py", tmp_path, complexities=(125, 250, 500), sizes=(26, 32))
     assert gain(rows) > 40
+
+
+def test_a_mesh_that_follows_a_front_has_a_fifth_of_the_error(tmp_path):
+    pytest.importorskip("skfem")
+    program = runpy.run_path(str(EXAMPLES / "scikit_fem/moving_front.py"))
+    series = tmp_path / "series.pvd"
+    rows = program["main"](complexity=400, end=0.1, steps=20, output=str(series))
+    (_, uniform_points, uniform), (_, points, following) = rows
+    assert points < uniform_points
+    assert uniform > 5 * following
+    assert series.read_text().count("<DataSet") == 21

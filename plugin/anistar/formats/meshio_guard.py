@@ -25,7 +25,7 @@ from .suffixes import suffix_of
 # The integer array of tags in the files that we write; where it is present no other counts.
 TAGS = "medit:ref"
 # Integer arrays that carry tags in other files, the first one that says anything is taken.
-FOREIGN_TAGS = ("gmsh:physical", "cell_tags", "refs", "gmsh:geometrical")
+FOREIGN_TAGS = ("gmsh:physical", "cell_tags", "refs", "gmsh:geometrical", "su2:tag")
 # JSON of [dim, tag, name] as bytes, in the field data of the files that we write.
 NAMES = "anistar:names"
 _XDMF = (".xdmf", ".xmf")
