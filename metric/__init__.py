@@ -7,14 +7,19 @@ in 1 / length**2: an edge v should satisfy ``v^T M v = 1``.
 from .algebra import absolute, exp_metric, interpolated, log_metric, sqrt_metric
 from .bounds import bounded
 from .checks import MetricError, check_metric
-from .combination import intersected, mean
+from .combination import intersected, limited_step, mean
 from .complexity import ELEMENTS_PER_COMPLEXITY, complexity
+from .curvature import curvature_metric
 from .distortion import distortion
+from .error_model import predicted_error
+from .estimate import Estimate, estimate
 from .gradation import graded
 from .graph import mesh_edges
+from .implied import implied_metric
+from .instants import SpaceTimeLedger, from_instants
 from .ledger import Ledger, Stage
 from .mesh import MeshLike
-from .normalisation import normalised
+from .normalisation import normalised, normalised_space_time
 from .options import MetricOptions
 from .pipeline import from_fields
 from .recovery import (
@@ -26,36 +31,49 @@ from .recovery import (
     recover_hessian,
     recovery_confidence,
 )
+from .size_fields import size_in_box, size_near_boundary, size_near_points
 from .sizes import from_sizes
 
 __all__ = [
     "ELEMENTS_PER_COMPLEXITY",
     "METHODS",
+    "Estimate",
     "Ledger",
     "MeshLike",
     "MetricError",
     "MetricOptions",
     "RecoveryConfidence",
     "RecoveryOptions",
+    "SpaceTimeLedger",
     "Stage",
     "absolute",
     "bounded",
     "check_metric",
     "complexity",
+    "curvature_metric",
     "distortion",
+    "estimate",
     "exp_metric",
     "from_fields",
+    "from_instants",
     "from_sizes",
     "graded",
+    "implied_metric",
     "interpolated",
     "intersected",
+    "limited_step",
     "log_metric",
     "mean",
     "mesh_edges",
     "normalised",
+    "normalised_space_time",
     "p2_nodes",
+    "predicted_error",
     "recover_gradient",
     "recover_hessian",
     "recovery_confidence",
+    "size_in_box",
+    "size_near_boundary",
+    "size_near_points",
     "sqrt_metric",
 ]

@@ -2,33 +2,46 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .algebra import compose, eigh
-from .checks import check_metric
+from .checks import check_metric, check_result
 
 Array = NDArray[np.float64]
+
+Bound = ArrayLike | Callable[[Array], ArrayLike] | None
+"""A number, one value per point, or a function of the points (n, d) that returns them."""
 
 
 def bounded(
     M: Array,
     *,
-    h_min: ArrayLike | None = None,
-    h_max: ArrayLike | None = None,
-    a_max: ArrayLike | None = None,
+    h_min: Bound = None,
+    h_max: Bound = None,
+    a_max: Bound = None,
+    points: Array | None = None,
+    restrict_anisotropy_first: bool = False,
 ) -> Array:
-    """Bound the sizes first, then the ratio of the largest to the smallest size.
+    """Bound the sizes, and the ratio of the largest to the smallest size.
 
     Parameters
     ----------
     M : ndarray (n, d, d)
         Metric, in 1 / length**2.
-    h_min, h_max : float or array_like (n,), optional
-        Bounds of the sizes, lengths. None means off.
-    a_max : float or array_like (n,), optional
+    h_min, h_max : float, array_like (n,) or callable, optional
+        Bounds of the sizes, lengths. None means off. A callable takes the points (n, d) and
+        returns n values.
+    a_max : float, array_like (n,) or callable, optional
         Largest ratio of sizes at a point, at least 1. Long sizes are reduced to it; a short
         one is never enlarged. None means off.
+    points : ndarray (n, d), optional
+        Where the tensors are; needed by callables only.
+    restrict_anisotropy_first : bool
+        Bound the ratio before the sizes. Both bounds hold either way, but where `h_min` acts,
+        a ratio that was bounded before refines the long directions more.
 
     Returns
     -------
@@ -42,17 +55,19 @@ def bounded(
         If a bound is not positive, has the wrong length, or ``h_min > h_max`` somewhere.
     """
     M = check_metric(M)
-    low, high, ratio = check_bounds(len(M), h_min=h_min, h_max=h_max, a_max=a_max)
-    return clipped(M, low, high, ratio)
+    low, high, ratio = check_bounds(len(M), h_min=h_min, h_max=h_max, a_max=a_max, points=points)
+    if restrict_anisotropy_first:
+        M = clipped(M, None, None, ratio)
+    return check_result(clipped(M, low, high, ratio), "the bounds")
 
 
 def check_bounds(
-    n: int, *, h_min: ArrayLike | None, h_max: ArrayLike | None, a_max: ArrayLike | None
+    n: int, *, h_min: Bound, h_max: Bound, a_max: Bound, points: Array | None = None
 ) -> tuple[Array | None, Array | None, Array | None]:
     """Return the bounds as columns (n, 1) or (1, 1), or raise ValueError."""
-    low = _column("h_min", h_min, n, 0.0)
-    high = _column("h_max", h_max, n, 0.0)
-    ratio = _column("a_max", a_max, n, 1.0)
+    low = _column("h_min", _at(points, "h_min", h_min), n, 0.0)
+    high = _column("h_max", _at(points, "h_max", h_max), n, 0.0)
+    ratio = _column("a_max", _at(points, "a_max", a_max), n, 1.0)
     if low is not None and high is not None:
         both = np.broadcast_arrays(low, high)
         bad = np.flatnonzero(both[0] > both[1])
@@ -75,6 +90,18 @@ def clipped(M: Array, h_min: Array | None, h_max: Array | None, a_max: Array | N
     if a_max is not None:
         values = np.maximum(values, values[:, -1:] / a_max**2)
     return compose(values, vectors)
+
+
+def _at(points: Array | None, name: str, bound: Bound) -> ArrayLike | None:
+    """Return the values of a bound that may be a function of the points."""
+    if not callable(bound):
+        return bound
+    if points is None:
+        raise ValueError(f"{name} is a function: give the points where it is to be evaluated")
+    values = np.asarray(bound(points), dtype=np.float64)
+    if values.shape not in ((), (len(points),)):
+        raise ValueError(f"{name} returned shape {values.shape} for {len(points)} points")
+    return values
 
 
 def _column(name: str, bound: ArrayLike | None, n: int, least: float) -> Array | None:

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import logging
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .algebra import eigenvalues
+from .algebra import compose, eigenvalues, eigh
+
+logger = logging.getLogger(__name__)
 
 SYMMETRY_TOLERANCE = 1e-8
 """Largest asymmetry, relative to the largest entry, that is taken for round-off."""
+
+
+REPAIRS = ("raise", "floor")
+
+FLOOR_RATIO = 1e-12
+"""A repaired eigenvalue relative to the largest one of its tensor: an anisotropy of 1e6."""
 
 
 class MetricError(ValueError):
@@ -16,7 +26,12 @@ class MetricError(ValueError):
 
 
 def check_metric(
-    M: ArrayLike, *, n_points: int | None = None, dim: int | None = None, name: str = "metric"
+    M: ArrayLike,
+    *,
+    n_points: int | None = None,
+    dim: int | None = None,
+    name: str = "metric",
+    repair: str = "raise",
 ) -> NDArray[np.float64]:
     """Return `M` as a contiguous, exactly symmetric float64 array, or raise.
 
@@ -28,6 +43,10 @@ def check_metric(
         The expected n and d.
     name : str
         What to call the field in messages.
+    repair : {"raise", "floor"}
+        What to do where a tensor is not positive definite. ``floor`` lifts its eigenvalues to
+        1e-12 times its largest one, or where none is positive to the smallest value that the
+        other points got, and logs a warning. What is not finite or not symmetric raises always.
 
     Returns
     -------
@@ -41,16 +60,91 @@ def check_metric(
         definite; the first such point is named.
     TypeError
         If the values are not real numbers.
+    ValueError
+        If `repair` is unknown.
     """
+    check_repair(repair)
     tensors = check_tensors(M, n_points=n_points, dim=dim, name=name)
-    smallest = eigenvalues(tensors)[:, 0]
-    bad = np.flatnonzero(~(smallest > 0.0))
+    bad = _not_definite(tensors)
+    if bad.size == 0:
+        return tensors
+    values, vectors = eigh(tensors)
+    place = f"{name} at point {bad[0]}"
+    problem = f"not positive definite: smallest eigenvalue {values[bad[0], 0]:.1e}{_others(bad)}"
+    if repair == "raise":
+        raise MetricError(f"{place} is {problem}")
+    floor = FLOOR_RATIO * values[:, -1:]
+    if not (floor > 0.0).any():
+        raise MetricError(f"{place} is {problem}; there is no positive eigenvalue to repair it by")
+    floor = np.where(floor > 0.0, floor, floor[floor > 0.0].min())
+    tensors[bad] = compose(np.maximum(values, floor)[bad], vectors[bad])
+    logger.warning(
+        "%s was %s; its eigenvalues are lifted to at least %.1e", place, problem, floor[bad[0], 0]
+    )
+    return tensors
+
+
+def check_repair(repair: str) -> None:
+    """Raise ValueError if `repair` is unknown."""
+    if repair not in REPAIRS:
+        raise ValueError(f"repair must be one of {', '.join(REPAIRS)}, got {repair!r}")
+
+
+def check_result(
+    M: NDArray[np.float64], operation: str, *, stays_definite: bool = False
+) -> NDArray[np.float64]:
+    """Return what an operation made of checked metrics, or raise naming it and the point.
+
+    Sizes below 1e-154 or above 1e154 overflow when they are squared, and tensors whose
+    eigenvalues differ by more than 1e16 are no longer definite in double precision.
+
+    Raises
+    ------
+    MetricError
+        If a tensor is not finite or not positive definite.
+    """
+    bad = _not_finite(M.reshape(len(M), -1))
     if bad.size:
         raise MetricError(
-            f"{name} at point {bad[0]} is not positive definite: "
-            f"smallest eigenvalue {smallest[bad[0]]:.1e}{_others(bad)}"
+            f"{operation} gave a tensor that is not finite at point {bad[0]}: "
+            f"{M[bad[0]].tolist()}{_others(bad)}"
         )
-    return tensors
+    bad = np.empty(0, dtype=np.intp) if stays_definite else _not_definite(M)
+    if bad.size:
+        smallest = eigenvalues(M[bad[:1]])[0, 0]
+        raise MetricError(
+            f"{operation} gave a tensor that is not positive definite at point "
+            f"{bad[0]}: smallest eigenvalue {smallest:.1e}{_others(bad)}"
+        )
+    return M
+
+
+def _not_definite(tensors: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Points whose tensor is not positive definite in double precision."""
+    if tensors.shape[-1] == 3:
+        try:
+            np.linalg.cholesky(tensors)  # 6 times faster than spectra
+        except np.linalg.LinAlgError:
+            pass
+        else:
+            return np.empty(0, dtype=np.intp)
+    positive = (eigenvalues(tensors) > 0.0).all(axis=1)
+    pivots = np.array(tensors)
+    with np.errstate(all="ignore"):
+        for k in range(tensors.shape[-1]):
+            positive &= pivots[:, k, k] > 0.0
+            column = pivots[:, k + 1 :, k] / pivots[:, k, k, None]
+            pivots[:, k + 1 :, k + 1 :] -= column[:, :, None] * pivots[:, None, k, k + 1 :]
+    return np.flatnonzero(~positive)
+
+
+def _not_finite(rows: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the indices of rows (n, k) that hold NaN or infinity."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        total = rows.sum()
+    if np.isfinite(total):
+        return np.empty(0, dtype=np.intp)
+    return np.flatnonzero(~np.isfinite(rows).all(axis=1))
 
 
 def check_tensors(
@@ -68,20 +162,31 @@ def check_tensors(
     if n_points is not None and len(tensors) != n_points:
         raise MetricError(f"{name} has {len(tensors)} tensors but the mesh has {n_points} points")
     flat = tensors.reshape(len(tensors), -1)
-    bad = np.flatnonzero(~np.isfinite(flat).all(axis=1))
+    bad = _not_finite(flat)
     if bad.size:
         value = flat[bad[0]][~np.isfinite(flat[bad[0]])][0]
         raise MetricError(f"{name} at point {bad[0]} is not finite: {value}{_others(bad)}")
-    transposed = tensors.transpose(0, 2, 1)
-    asymmetry = np.abs(tensors - transposed).max(axis=(1, 2), initial=0.0)
-    largest = np.abs(flat).max(axis=1, initial=0.0)
+    _symmetrise(tensors, name)
+    return tensors
+
+
+def _symmetrise(tensors: NDArray[np.float64], name: str) -> None:
+    """Remove asymmetry that is round-off in place, raise MetricError for any other."""
+    upper = np.triu_indices(tensors.shape[-1], 1)
+    pairs = [(tensors[:, i, j], tensors[:, j, i]) for i, j in zip(*upper, strict=True)]
+    if all(np.array_equal(above, below) for above, below in pairs):
+        return
+    asymmetry = np.max([np.abs(above - below) for above, below in pairs], axis=0)
+    largest = np.abs(tensors).max(axis=(1, 2), initial=0.0)
     bad = np.flatnonzero(asymmetry > SYMMETRY_TOLERANCE * largest)
     if bad.size:
         raise MetricError(
             f"{name} at point {bad[0]} is not symmetric: off-diagonal entries differ by "
             f"{asymmetry[bad[0]]:.1e}{_others(bad)}"
         )
-    return np.ascontiguousarray(0.5 * (tensors + transposed))
+    for above, below in pairs:
+        above += 0.5 * (below - above)
+        below[...] = above
 
 
 def check_values(

@@ -1,29 +1,38 @@
-"""Combinations of metrics: intersection by simultaneous reduction, log-Euclidean mean."""
+"""Combinations of metrics: intersection, log-Euclidean mean, steps between two of them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .algebra import compose, congruent, eigh, exp_metric, log_metric, lower_factor
-from .checks import check_metric
+from . import kernels
+from .algebra import compose, congruent, definite_eigh, exp_metric, log_metric, lower_factor
+from .checks import check_metric, check_result
+from .ellipsoids import largest_inside
 
 Array = NDArray[np.float64]
 
 
-def intersected(M: Array, *others: Array) -> Array:
+RULES = ("pairwise", "john")
+
+
+def intersected(M: Array, *others: Array, rule: str = "pairwise") -> Array:
     """Intersection of metrics: at least as fine as each of them in every direction.
 
     Two metrics are diagonal in one common basis; the larger of the two values is taken on
-    each axis, which is the largest ellipsoid inside both unit balls [1]_. More than two are
-    intersected pairwise in the given order; the result then depends on that order.
+    each axis, which is the largest ellipsoid inside both unit balls [1]_.
 
     Parameters
     ----------
     M, *others : ndarray (n, d, d)
         Metrics at the same points, in 1 / length**2.
+    rule : {"pairwise", "john"}
+        For more than two. ``pairwise``: the first two, then the result and the third, and so
+        on; the result depends on the order. ``john``: the ellipsoid of largest volume inside
+        all unit balls, which is unique, for some hundred times the work.
 
     Returns
     -------
@@ -33,33 +42,37 @@ def intersected(M: Array, *others: Array) -> Array:
     ------
     MetricError
         If one of them is no metric, or their shapes differ.
+    ValueError
+        If `rule` is unknown.
 
     References
     ----------
     .. [1] Alauzet, Size gradation control of anisotropic meshes, Finite Elements in Analysis
        and Design 46, 2010, section 3.2.
     """
-    result = check_metric(M)
-    n, d = result.shape[:2]
-    for k, other in enumerate(others):
-        checked = check_metric(other, n_points=n, dim=d, name=f"metric number {k + 2}")
-        result, _ = intersection(result, checked, 0.0)
-    return result
+    check_rule(rule)
+    first = check_metric(M, name="metric number 1" if others else "metric")
+    n, d = first.shape[:2]
+    rest = [
+        check_metric(other, n_points=n, dim=d, name=f"metric number {k + 2}")
+        for k, other in enumerate(others)
+    ]
+    result = intersection_of([first, *rest], rule)
+    # what an intersection adds is semidefinite
+    return check_result(result, "the intersection", stays_definite=True)
 
 
-def intersection(M: Array, N: Array, tolerance: float) -> tuple[Array, NDArray[np.bool_]]:
-    """Intersect checked metrics; leave `M` where `N` exceeds it by a factor < 1 + `tolerance`.
+def intersection_of(metrics: Sequence[Array], rule: str) -> Array:
+    """Intersect checked metrics by a checked rule."""
+    if rule == "john" and len(metrics) > 2:
+        return largest_inside(metrics)
+    return reduce(kernels.intersect, metrics)
 
-    Returns the metrics (n, d, d) and a mask (n,) of those that changed. What is added to `M`
-    is positive semidefinite, so the result is never coarser.
-    """
-    L = lower_factor(M)
-    values, vectors = eigh(congruent(L, N))
-    changed = values[:, -1] > 1.0 + tolerance
-    result = M.copy()
-    gain = np.maximum(values[changed] - 1.0, 0.0)
-    result[changed] += compose(gain, np.matmul(L[changed], vectors[changed]))
-    return result, changed
+
+def check_rule(rule: str) -> None:
+    """Raise ValueError if the rule of an intersection is unknown."""
+    if rule not in RULES:
+        raise ValueError(f"intersection rule must be one of {', '.join(RULES)}, got {rule!r}")
 
 
 def mean(metrics: Sequence[Array], weights: ArrayLike | None = None) -> Array:
@@ -99,4 +112,42 @@ def mean(metrics: Sequence[Array], weights: ArrayLike | None = None) -> Array:
     L = np.zeros_like(checked[0])
     for share, M in zip(shares, checked, strict=True):
         L += np.reshape(share, (-1, 1, 1)) * log_metric(M)
-    return exp_metric(L)
+    return check_result(exp_metric(L), "the log-Euclidean mean")
+
+
+def limited_step(current: Array, target: Array, ratio: float = 2.0) -> Array:
+    """Go from a current metric towards a target, changing no size by more than `ratio`.
+
+    In the basis that makes both diagonal, each size h of the target is held between the
+    current one divided and multiplied by `ratio`; so every length changes by at most that.
+
+    Parameters
+    ----------
+    current, target : ndarray (n, d, d)
+        Metrics at the same points, in 1 / length**2; `current` may be `implied_metric(mesh)`.
+    ratio : float
+        Largest factor between sizes, above 1.
+
+    Returns
+    -------
+    ndarray (n, d, d)
+        The target itself where it is near enough.
+
+    Raises
+    ------
+    MetricError
+        If one of them is no metric, or their shapes differ.
+    ValueError
+        If `ratio` is out of range.
+    """
+    if not (np.isfinite(ratio) and ratio > 1.0):
+        raise ValueError(f"ratio must be above 1, got {ratio}")
+    start = check_metric(current, name="current metric")
+    n, d = start.shape[:2]
+    result = check_metric(target, n_points=n, dim=d, name="target metric")
+    L = lower_factor(start)
+    values, vectors = definite_eigh(congruent(L, result))
+    held = np.clip(values, ratio**-2.0, ratio**2.0)
+    far = np.flatnonzero((held != values).any(axis=1))
+    result[far] = compose(held[far], np.matmul(L[far], vectors[far]))
+    return check_result(result, "the limited step")

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .algebra import compose, determinant, eigh
-from .combination import intersection
 from .graph import VertexGraph
+from .simultaneous_reduction import intersection
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import growth
+from . import growth, simultaneous_reduction
 from .graph import VertexGraph
 from .growth import Growth
 
@@ -19,6 +19,14 @@ try:
     core = import_module(".._core", __package__)
 except ImportError:  # the package is used by itself
     core = None
+
+
+def intersect(M: Array, N: Array) -> Array:
+    """Intersect checked metrics (n, d, d), see `combination.intersected`."""
+    if core is None:
+        return simultaneous_reduction.intersect(M, N)
+    result: Array = core.intersect(M, N)
+    return result
 
 
 def grade(

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .aliases import flattened, our_name, our_value
 from .bounds import check_bounds
+from .combination import check_rule
 from .complexity import ELEMENTS_PER_COMPLEXITY
 from .gradation import DEFAULT_FACTORS, check_gradation
-from .normalisation import check_normalisation
+from .normalisation import check_p, check_target
 from .recovery import RecoveryOptions
+from .scaling import Scale, check_scale
 
-Bound = float | NDArray[np.float64] | None
+Bound = float | NDArray[np.float64] | Callable[[NDArray[np.float64]], ArrayLike] | None
+TARGETS = ("target_complexity", "target_elements", "target_error")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,18 +28,31 @@ class MetricOptions:
 
     Attributes
     ----------
-    target_complexity : float, optional
-        Complexity of the result. Either this or `target_elements` must be given.
-    target_elements : float, optional
-        Number of triangles or tetrahedra to aim at, turned into a complexity by the count of
-        perfect unit simplices, 2.309 or 8.49 per unit of complexity.
+    target_complexity, target_elements, target_error : float, optional
+        What to aim at, one of them. Complexity of the result. Number of triangles or
+        tetrahedra, by the calibrated count of `estimate`. Largest Lp norm of the interpolation
+        error of any field, by `predicted_error`, in units of the field's `scale`.
+    max_elements : float, optional
+        Cap on the estimated number of elements, whatever the target; the ledger says when it
+        acted, and where bounds and gradation alone need more it is an error. `adapt` holds the
+        mesh to it.
     p : float
         Norm of the interpolation error to minimise, from 1 to infinity.
-    h_min, h_max : float or ndarray (n,), optional
-        Bounds of the sizes, lengths. Without `h_max`, sizes stay below the diagonal of the
-        bounding box.
-    a_max : float or ndarray (n,), optional
+    scale : {"complexity", "range", "std", "none"}, float, or dict of field to these
+        What makes fields comparable. "complexity": each field is normalised to the target by
+        itself, so that units do not matter and all get a like number of elements. Else fields
+        are divided by their range (largest minus smallest value, of the component with most),
+        their standard deviation, 1 ("none"), or a number, intersected, and normalised together.
+        A dict gives a value for each field; "complexity" is for all or none.
+    intersection_rule : {"pairwise", "john"}
+        How more than two fields or components are intersected, see `intersected`.
+    h_min, h_max : float, ndarray (n,) or callable, optional
+        Bounds of the sizes, lengths; a callable takes the points (n, d). Without `h_max`,
+        sizes stay below the diagonal of the bounding box.
+    a_max : float, ndarray (n,) or callable, optional
         Largest ratio of sizes at a point.
+    restrict_anisotropy_first : bool
+        Apply `a_max` to the Hessians as well, before they are normalised.
     gradation_factor : float, None or "auto"
         Growth of sizes from one unit edge to the next; "auto" is 1.5 in 2D and 1.3 in 3D.
     gradation_model : {"physical", "metric", "mixed"}
@@ -49,10 +65,15 @@ class MetricOptions:
 
     target_complexity: float | None = None
     target_elements: float | None = None
+    target_error: float | None = None
+    max_elements: float | None = None
     p: float = 2.0
+    scale: Scale = "complexity"
+    intersection_rule: str = "pairwise"
     h_min: Bound = None
     h_max: Bound = None
     a_max: Bound = None
+    restrict_anisotropy_first: bool = False
     gradation_factor: float | str | None = "auto"
     gradation_model: str = "physical"
     method: str = "auto"
@@ -62,19 +83,25 @@ class MetricOptions:
     noise: float | None = None
 
     def __post_init__(self) -> None:
-        if self.target_complexity is not None and self.target_elements is not None:
-            raise ValueError(
-                "give target_complexity or target_elements, not both: got "
-                f"{self.target_complexity} and {self.target_elements}"
-            )
-        elements = self.target_elements
-        if elements is not None and not (np.isfinite(elements) and elements > 0):
-            raise ValueError(f"target_elements must be positive, got {elements}")
-        check_normalisation(self.target_complexity or 1.0, self.p)
-        if self.target_complexity is not None:
-            check_normalisation(self.target_complexity, self.p)
-        n = max((np.asarray(b).size for b in (self.h_min, self.h_max, self.a_max)), default=1)
-        check_bounds(n, h_min=self.h_min, h_max=self.h_max, a_max=self.a_max)
+        given = {name: getattr(self, name) for name in TARGETS}
+        given = {name: value for name, value in given.items() if value is not None}
+        if len(given) > 1:
+            found = ", ".join(f"{name} = {value}" for name, value in given.items())
+            raise ValueError(f"give one target, not several: got {found}")
+        for name, value in given.items():
+            check_target(name, value)
+        if self.max_elements is not None:
+            check_target("max_elements", self.max_elements)
+        check_p(self.p)
+        check_scale(self.scale)
+        check_rule(self.intersection_rule)
+        bounds = {
+            name: None if callable(bound) else bound
+            for name in ("h_min", "h_max", "a_max")
+            for bound in [getattr(self, name)]
+        }
+        n = max(np.asarray(bound).size for bound in bounds.values())
+        check_bounds(n, **bounds)
         factor = self.gradation_factor
         if isinstance(factor, str) and factor != "auto":
             raise ValueError(f"gradation_factor must be a number, None or 'auto', got {factor!r}")
@@ -117,13 +144,18 @@ class MetricOptions:
             found[name] = value if name == key else our_value(name, value)
         return cls(**found)
 
+    def check_target(self) -> None:
+        """Raise ValueError if the options have no target."""
+        if all(getattr(self, name) is None for name in TARGETS):
+            raise ValueError(f"give {', '.join(TARGETS[:-1])} or {TARGETS[-1]}, got none of them")
+
     def complexity_for(self, dim: int) -> float:
-        """Return the complexity to reach in dimension `dim`.
+        """Return the complexity to aim at in dimension `dim`, before any mesh is known.
 
         Raises
         ------
         ValueError
-            If neither a complexity nor a number of elements was given.
+            If neither a complexity nor a number of elements is given.
         """
         if self.target_complexity is not None:
             return self.target_complexity

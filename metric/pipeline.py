@@ -4,27 +4,24 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import reduce
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import absolute, log_determinant
-from .bounds import check_bounds, clipped
-from .combination import intersected
-from .complexity import integral_of_exponential
+from .aim import Aimed, aimed_at
+from .algebra import absolute
+from .combination import intersection_of
 from .distortion import distortion
-from .gradation import grade_on
-from .graph import VertexGraph, wide_graph
-from .growth import Growth
+from .estimate import estimate
+from .field_hessians import FieldHessian, hessians_of
+from .finishing import Finishing, finishing_on
 from .ledger import Ledger, Stage
-from .mesh import MeshLike, cell_volumes, diameter
+from .mesh import MeshLike
 from .normalisation import SMALLEST_FLOOR, normalised
 from .options import MetricOptions
-from .recovery import Samples, hessians_of_fields, read_fields
-from .rootfind import COMPLEXITY_TOLERANCE, Evaluation, rescaling
+from .recovery import read_fields
+from .scaling import scales_of
 
 Array = NDArray[np.float64]
 
@@ -38,8 +35,10 @@ def from_fields(
 
     The order is: recover the Hessians, take absolute values, intersect the components of each
     vector, normalise each field in Lp to the target (which also makes fields of different
-    units comparable), intersect the fields, bound, grade; and one factor on the intersected
-    metric is found such that the complexity after all of it meets the target within 0.1 %.
+    units comparable; or scale the fields, intersect them and normalise once), intersect the
+    fields, bound, grade; and one factor on the intersected metric is found such that the
+    complexity, the expected number of elements or the predicted error after all of it meets
+    the target within 0.1 %.
 
     Parameters
     ----------
@@ -63,135 +62,89 @@ def from_fields(
     ------
     TypeError, ValueError
         If a field is NaN somewhere, of the wrong length or kind, or a bound array does not
-        fit; the field and the point are named.
+        fit; the field and the point are named. If `max_elements` cannot be kept.
 
     References
     ----------
     .. [1] Loseille, Alauzet, Continuous mesh framework part II, SIAM Journal on Numerical
        Analysis 49, 2011.
     """
-    d = mesh.points.shape[1]
     samples = read_fields(mesh, fields)
-    target = options.complexity_for(d)
-    finishing = _finishing(mesh, options)
-    parts, stages = [], []
-    for name, (H, remark) in _hessians(finishing, samples, options).items():
-        size = finishing.h_max[:, 0]
-        parts.append(normalised(mesh, H, target_complexity=target, p=options.p, h_max=size))
-        stages.append(finishing.stage(f"normalised {name}", parts[-1], remark))
-    base = reduce(intersected, parts)
-    stages.append(finishing.stage("intersected", base))
-    (bounded, growth), best, evaluations = rescaling(
-        lambda factor: finishing.attempt(factor * base), target, d
-    )
-    stages.append(finishing.stage("rescaled", best.factor * base))
-    stages.append(finishing.stage("bounded", bounded))
-    stages.append(finishing.stage("graded", growth.metric))
-    ledger = _ledger(mesh, target, best, evaluations, tuple(stages), growth)
+    options.check_target()
+    finishing = finishing_on(mesh, options)
+    scales = scales_of(samples, options.scale)
+    found = hessians_of(mesh, finishing.graph, samples, options, scales)
+    base, stages = _normalised_together(finishing, found, options)
+    aimed = aimed_at(finishing, base, found, options)
+    rescaled = aimed.factor * base
+    stages.append(finishing.stage("rescaled", rescaled))
+    stages.append(finishing.stage("bounded", finishing.bounded(rescaled)))
+    stages.append(finishing.stage("graded", aimed.growth.metric))
+    ledger = _ledger(mesh, aimed, found, options, tuple(stages))
     if not ledger.reached:
         logger.warning(ledger.message)
-    return growth.metric, ledger
+    return aimed.growth.metric, ledger
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Finishing:
-    """The stages that a factor goes through: bound and grade, with what they need at hand."""
-
-    mesh: MeshLike
-    graph: VertexGraph
-    volumes: Array
-    h_min: Array | None
-    h_max: Array
-    a_max: Array | None
-    factor: float | None
-    model: str
-
-    def attempt(self, M: Array) -> tuple[float, tuple[Array, Growth]]:
-        bounded = clipped(M, self.h_min, self.h_max, self.a_max)
-        if self.factor is None:
-            growth = Growth(metric=bounded, rounds=0, updates=0, converged=True)
-        else:
-            growth = grade_on(self.graph, self.mesh.points, bounded, self.factor, self.model)
-            # an intersection of metrics within the bounds can exceed them by some per cent
-            growth = replace(growth, metric=clipped(growth.metric, self.h_min, None, self.a_max))
-        return self.complexity(growth.metric), (bounded, growth)
-
-    def complexity(self, M: Array) -> float:
-        return integral_of_exponential(self.mesh.cells, self.volumes, 0.5 * log_determinant(M))
-
-    def stage(self, name: str, M: Array, remark: str = "") -> Stage:
-        return Stage(name=name, complexity=self.complexity(M), remark=remark)
+def _normalised_together(
+    finishing: Finishing, found: Mapping[str, FieldHessian], options: MetricOptions
+) -> tuple[Array, list[Stage]]:
+    """Normalise the fields and intersect them, in the order that the scale asks for."""
+    mesh, size = finishing.mesh, finishing.h_max[:, 0]
+    d = mesh.points.shape[1]
+    stages, parts = [], []
+    if options.scale == "complexity":
+        for name, field in found.items():
+            target = _first_target(options, d, field.unit)
+            M = normalised(mesh, field.absolute, **target, p=options.p, h_max=size)
+            stages.append(finishing.stage(f"normalised {name}", M, field.remark))
+            parts.append(M)
+        base = intersection_of(parts, options.intersection_rule)
+        stages.append(finishing.stage("intersected", base))
+        return base, stages
+    weights = {name: field.unit / field.scale for name, field in found.items()}
+    largest = max(weights.values())
+    for name, field in found.items():
+        H = field.absolute * (weights[name] / largest)
+        parts.append(absolute(H, SMALLEST_FLOOR * max(float(H.max()), np.finfo(float).tiny)))
+    H = intersection_of(parts, options.intersection_rule)
+    target = _first_target(options, d, largest)
+    base = normalised(mesh, H, **target, p=options.p, h_max=size)
+    remark = ", ".join(f"{name} / {field.scale:.3g}" for name, field in found.items())
+    return base, [finishing.stage("normalised", base, remark)]
 
 
-def _finishing(mesh: MeshLike, options: MetricOptions) -> _Finishing:
-    n, d = mesh.points.shape
-    h_max = diameter(mesh) if options.h_max is None else options.h_max
-    low, high, ratio = check_bounds(n, h_min=options.h_min, h_max=h_max, a_max=options.a_max)
-    assert high is not None  # h_max always has a value
-    return _Finishing(
-        mesh=mesh,
-        graph=wide_graph(mesh),
-        volumes=cell_volumes(mesh),
-        h_min=low,
-        h_max=high,
-        a_max=ratio,
-        factor=options.gradation_for(d),
-        model=options.gradation_model,
-    )
-
-
-def _hessians(
-    finishing: _Finishing, fields: Mapping[str, Samples], options: MetricOptions
-) -> dict[str, tuple[Array, str]]:
-    """|H| of each field (n, d, d), components intersected, with a remark for the ledger."""
-    recovered = hessians_of_fields(finishing.mesh, fields, options.recovery, finishing.graph)
-    found = {}
-    for name, field in recovered.items():
-        largest = float(np.abs(field.hessian).max(initial=0.0))
-        found[name] = (_intersected_components(field.hessian, largest), field.remark)
-    return found
-
-
-def _intersected_components(H: Array, largest: float) -> Array:
-    """Intersect the |H| of the components of one field (n, k, d, d)."""
-    if H.shape[1] == 1 or largest == 0.0:
-        return absolute(H[:, 0])
-    floor = SMALLEST_FLOOR * largest
-    return reduce(intersected, [absolute(part, floor) for part in H.transpose(1, 0, 2, 3)])
+def _first_target(options: MetricOptions, dim: int, unit: float) -> dict[str, float]:
+    """Return the target of the normalisation, from which the root-find starts."""
+    if options.target_error is not None:
+        return {"target_error": options.target_error / unit}
+    return {"target_complexity": options.complexity_for(dim)}
 
 
 def _ledger(
     mesh: MeshLike,
-    target: float,
-    best: Evaluation,
-    evaluations: list[Evaluation],
+    aimed: Aimed,
+    found: Mapping[str, FieldHessian],
+    options: MetricOptions,
     stages: tuple[Stage, ...],
-    growth: Growth,
 ) -> Ledger:
-    error = best.complexity / target - 1.0
-    reached = abs(error) <= COMPLEXITY_TOLERANCE
-    message = f"complexity {best.complexity:.6g} after {len(evaluations)} evaluations"
-    if not reached:
-        found = [evaluation.complexity for evaluation in evaluations]
-        # the order of the intersections in the gradation can make the complexity jump
-        jumps = min(found) < target < max(found)
-        message = (
-            f"target complexity {target:.6g} is "
-            f"{'jumped over by' if jumps else 'out of reach with these bounds and'} the "
-            f"gradation: the nearest is {best.complexity:.6g} ({100 * error:+.2g} %)"
-        )
+    M, growth = aimed.growth.metric, aimed.growth
+    message = aimed.message
     if not growth.converged:
         message += f"; gradation stopped after {growth.rounds} rounds"
-    values = distortion(mesh, growth.metric)
+    values = distortion(mesh, M)
     quantiles = {f"p{q}": float(np.percentile(values, q)) for q in (50, 90, 99)}
     return Ledger(
-        target_complexity=target,
-        complexity=best.complexity,
-        reached=reached,
+        target_complexity=aimed.target,
+        complexity=aimed.complexity,
+        reached=aimed.reached,
+        capped=aimed.capped,
         message=message,
-        factor=best.factor,
-        evaluations=len(evaluations),
+        factor=aimed.factor,
+        evaluations=aimed.evaluations,
         stages=stages,
         gradation_rounds=growth.rounds,
         distortion={**quantiles, "max": float(values.max())},
+        estimate=estimate(mesh, M),
+        predicted_error={name: field.error(mesh, M, options.p) for name, field in found.items()},
     )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .checks import check_result
+
 
 def from_sizes(h: ArrayLike, dim: int = 2) -> NDArray[np.float64]:
     """Return the metric that asks for the sizes `h`.
@@ -25,6 +27,8 @@ def from_sizes(h: ArrayLike, dim: int = 2) -> NDArray[np.float64]:
     ------
     ValueError
         If a size is not positive and finite, named by its point, or the shape does not fit.
+    MetricError
+        If the square of a size is out of the range of floating point.
     """
     sizes = np.asarray(h, dtype=np.float64)
     if sizes.ndim == 1:
@@ -36,5 +40,6 @@ def from_sizes(h: ArrayLike, dim: int = 2) -> NDArray[np.float64]:
         raise ValueError(f"size at point {bad[0]} must be positive and finite: {sizes[bad[0]]}")
     M = np.zeros((*sizes.shape, sizes.shape[1]))
     axis = np.arange(sizes.shape[1])
-    M[:, axis, axis] = sizes**-2.0
-    return M
+    with np.errstate(over="ignore"):
+        M[:, axis, axis] = sizes**-2.0
+    return check_result(M, "the squares of the sizes")

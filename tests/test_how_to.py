@@ -64,3 +64,22 @@ def test_the_solution_that_the_page_shows_can_be_read(folder):
     Path("four.sol").write_text(shown)
     (field,) = anistar.read("four.mesh")[1].values()
     assert field.values.tolist() == [0.0, 0.5, 0.5, 1.0]
+
+
+def test_every_command_of_the_page_on_metrics_leaves_a_metric(folder):
+    mesh, fields = anistar.read("in.mesh")
+    for name in ("in.vtu", "t0.vtu", "t1.vtu"):
+        anistar.write(name, mesh, fields)
+    given = np.tile(500.0 * np.eye(2), (mesh.n_points, 1, 1))
+    for name in ("other.sol", "wanted.sol"):
+        anistar.formats.write_metric(name, mesh, given)
+    commands = [
+        line
+        for block in code_blocks("docs/how-to/metric.md", "sh")
+        for line in block.strip().splitlines()
+    ]
+    assert len(commands) == 5
+    for command in commands:
+        assert call(command.replace("20000", "500")) == 0
+        assert Path("metric.sol").exists()
+    assert Path("metric_001.sol").exists()

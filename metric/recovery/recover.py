@@ -161,7 +161,7 @@ def recovery_confidence(
 
 
 @dataclass(frozen=True, kw_only=True)
-class FieldHessian:
+class RecoveredField:
     """The damped Hessian (n, k, d, d) of a field for the pipeline, and a remark on it."""
 
     hessian: Array
@@ -173,7 +173,7 @@ def hessians_of_fields(
     fields: Mapping[str, Samples],
     options: RecoveryOptions,
     graph: VertexGraph | None = None,
-) -> dict[str, FieldHessian]:
+) -> dict[str, RecoveredField]:
     """Recover the Hessians of checked fields; those in one space share the work.
 
     The size of the values has no meaning for a metric, so columns are scaled to the largest
@@ -190,7 +190,7 @@ def hessians_of_fields(
         for name, part in group:
             relative = size[part] / max(float(size[part].max()), np.finfo(np.float64).tiny)
             H = joined[:, part] * relative[:, None, None]
-            found[name] = FieldHessian(hessian=H, remark=_remark(setting, recovered, part))
+            found[name] = RecoveredField(hessian=H, remark=_remark(setting, recovered, part))
     return {name: found[name] for name in fields}
 
 

@@ -17,6 +17,9 @@ def delaunay_violator2(points: Annotated[NDArray[numpy.float64], dict(shape=(Non
 def in_metric_circle(metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], triangle: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> int:
     """Exactly: 1 inside, 0 on, -1 outside the circumscribed ellipse."""
 
+def intersect(first: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], second: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+    """Intersect two fields of metrics (n, d, d) by simultaneous reduction."""
+
 def grade(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], offsets: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], neighbours: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], *, model: str, log_factor: float, tolerance: float, max_rounds: int) -> tuple:
     """
     Grade a metric (n, d, d) along a graph given by offsets and neighbours; returns (metric, rounds, updates, converged).

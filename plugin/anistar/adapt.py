@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .aliases import canonical
+from .errors import MeshingError
 from .fields import Field, as_fields
 from .mesh import Mesh
-from .metric import MetricOptions, from_fields
+from .metric import Ledger, MetricOptions, from_fields
 from .options import require
-from .remesh import RemeshOptions, remesh
+from .remesh import Remeshed, RemeshOptions, remesh
 from .report import attributes
 from .transfer import TransferOptions, TransferReport, transfer
 
@@ -23,6 +24,14 @@ Floats = NDArray[np.float64]
 Projection = Callable[[Floats, int], Floats]
 
 STAGES = ("metric", "remesh", "transfer")
+
+#: Relative tolerance of `target_elements`, and what `max_elements` is undercut by, when the mesh
+#: is made again.
+ELEMENTS_TOLERANCE = 0.03
+CAP_MARGIN = 0.99
+
+#: How often at most.
+MAX_CORRECTIONS = 3
 
 
 def _transfer_to_a_remesh() -> TransferOptions:
@@ -113,6 +122,9 @@ class AdaptReport:
         What the mesher did.
     transfer : TransferReport
         What the transfer did.
+    corrections : int
+        How often the mesh was made again because it missed `target_elements` by more than 3 %
+        or exceeded `max_elements`.
     seconds : float
         Wall time of the whole adaptation.
     """
@@ -121,6 +133,7 @@ class AdaptReport:
     metric: Any
     remesh: Any
     transfer: TransferReport
+    corrections: int
     seconds: float
 
     def as_dict(self) -> dict[str, Any]:
@@ -171,24 +184,67 @@ def adapt(
     ValueError
         If a field does not fit the mesh, is unknown, or holds NaN where the metric needs it.
     MeshingError
-        If the mesher cannot finish.
+        If the mesher cannot finish, or cannot keep to `max_elements`.
     """
     started = time.perf_counter()
     options = options if options is not None else AdaptOptions()
     require(AdaptOptions, options=options)
     checked = as_fields(mesh, fields)
     names = metric_field_names(checked, options.metric_fields)
-    M, ledger = from_fields(mesh, {name: checked[name] for name in names}, options.metric)
-    done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
+    chosen = {name: checked[name] for name in names}
+    ledger, done, corrections = _to_count(mesh, chosen, options, geometry, project)
     carried = transfer(mesh, fields, done.mesh, options.transfer)
     report = AdaptReport(
         metric_fields=names,
         metric=ledger,
         remesh=done.report,
         transfer=carried.report,
+        corrections=corrections,
         seconds=time.perf_counter() - started,
     )
     return Adapted(done.mesh, carried.fields, done.metric, report)
+
+
+def _to_count(
+    mesh: Mesh,
+    fields: Mapping[str, Field],
+    options: AdaptOptions,
+    geometry: Mesh | None,
+    project: Projection | None,
+) -> tuple[Ledger, Remeshed, int]:
+    """Make the mesh, again where its number of elements is off, and count how often."""
+    wanted = options.metric
+    for corrections in range(MAX_CORRECTIONS + 1):
+        M, ledger = from_fields(mesh, fields, wanted)
+        done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
+        corrected = _corrected(options.metric, wanted, ledger, done.mesh.n_cells)
+        if corrected is None or not done.report.converged:  # a budget stopped it: so would the next
+            return ledger, done, corrections
+        wanted = corrected
+    cap = options.metric.max_elements
+    if cap is not None and done.mesh.n_cells > cap:
+        raise MeshingError(
+            f"{done.mesh.n_cells} elements exceed max_elements = {cap:g} after "
+            f"{MAX_CORRECTIONS} corrections",
+            done.report,
+        )
+    return ledger, done, MAX_CORRECTIONS
+
+
+def _corrected(
+    asked: MetricOptions, used: MetricOptions, ledger: Ledger, elements: int
+) -> MetricOptions | None:
+    """Return options that correct a count of elements that is off, None where it is right."""
+    cap, target = asked.max_elements, asked.target_elements
+    if cap is not None and elements > cap:
+        assert used.max_elements is not None  # it was asked for
+        return replace(used, max_elements=CAP_MARGIN * used.max_elements * cap / elements)
+    if target is None or ledger.capped or not ledger.reached:
+        return None
+    if abs(elements / target - 1.0) <= ELEMENTS_TOLERANCE:
+        return None
+    assert used.target_elements is not None  # it was asked for
+    return replace(used, target_elements=used.target_elements * target / elements)
 
 
 def metric_field_names(

@@ -271,7 +271,10 @@ def _adapted(
 ) -> _State:
     complexity = options.complexity_after(step.iteration, step.mesh.dim)
     metric = dataclasses.replace(
-        options.adapt.metric, target_complexity=complexity, target_elements=None
+        options.adapt.metric,
+        target_complexity=complexity,
+        target_elements=None,
+        target_error=None,
     )
     stages = dataclasses.replace(options.adapt, metric=metric)
     done = adapt(step.mesh, step.fields, stages, geometry=geometry, project=project)

@@ -204,3 +204,58 @@ class TestOptionsFromPlainNames:
     def test_a_group_that_is_no_mapping_is_named(self):
         with pytest.raises(TypeError, match="option group 'metric' must be a mapping, not 3"):
             AdaptOptions.from_dict({"metric": 3})
+
+
+@pytest.mark.parametrize("make", [square, annulus, two_regions])
+@pytest.mark.parametrize("elements", [1500, 6000])
+def test_a_number_of_elements_is_met_within_three_percent_by_one_remesh(make, elements):
+    mesh = make(8)
+    fields = {"u": layer(mesh.points)}
+    asked = AdaptOptions(metric=MetricOptions(target_elements=elements))
+    first = adapt(mesh, fields, asked)
+    done = adapt(first.mesh, {"u": layer(first.mesh.points)}, asked)
+    assert validate(done.mesh) == []
+    assert done.report.corrections == 0
+    assert done.mesh.n_cells == pytest.approx(elements, rel=0.03)
+    expected = done.report.metric.estimate
+    assert done.mesh.n_points == pytest.approx(expected.vertices, rel=0.03)
+
+
+def test_a_small_number_of_elements_is_met_by_making_the_mesh_again():
+    mesh = square(6)
+    asked = AdaptOptions(metric=MetricOptions(target_elements=100))
+    done = adapt(mesh, {"u": layer(mesh.points)}, asked)
+    assert validate(done.mesh) == []
+    assert done.report.corrections <= 3
+    assert done.mesh.n_cells == pytest.approx(100, rel=0.08)
+
+
+@pytest.mark.parametrize("target", [{"target_complexity": 1e5}, {"target_error": 1e-7}])
+def test_a_mesh_never_has_more_elements_than_its_cap(target):
+    mesh = square(8)
+    asked = AdaptOptions(metric=MetricOptions(max_elements=900, **target))
+    done = adapt(mesh, {"u": layer(mesh.points)}, asked)
+    assert validate(done.mesh) == []
+    assert 800 < done.mesh.n_cells <= 900
+    assert done.report.metric.capped
+    json.dumps(done.report.as_dict())
+
+
+def test_a_target_error_is_what_the_mesh_has():
+    mesh, error = square(10), 2e-3
+    asked = AdaptOptions(metric=MetricOptions(target_error=error))
+    for _ in range(3):
+        mesh = adapt(mesh, {"u": layer(mesh.points)}, asked).mesh
+    assert validate(mesh) == []
+    assert l2_error(mesh, layer(mesh.points), layer) == pytest.approx(error, rel=0.15)
+
+
+def test_a_mesh_that_a_budget_stopped_is_not_made_again():
+    mesh = square(8)
+    asked = AdaptOptions(
+        metric=MetricOptions(target_elements=5000), remesh=RemeshOptions(max_vertices=300)
+    )
+    done = adapt(mesh, {"u": layer(mesh.points)}, asked)
+    assert validate(done.mesh) == []
+    assert not done.report.remesh.converged
+    assert done.report.corrections == 0

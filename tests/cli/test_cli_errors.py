@@ -66,7 +66,7 @@ CASES = {
         "recovery method must be one of auto, quadratic, l2, mixed_l2, zz, clement, green, got",
     ),
     "out of bounds": ("adapt in.vtu -o o.vtu --target-complexity -3", "target_complexity"),
-    "no target": ("adapt in.vtu -o o.vtu", "target_complexity or target_elements"),
+    "no target": ("adapt in.vtu -o o.vtu", "target_elements or target_error"),
     "no such file": ("adapt gone.vtu -o o.vtu --target-complexity 9", "gone.vtu: no such file"),
     "unreadable file": ("adapt broken.vtu -o o.vtu --target-complexity 9", "broken.vtu"),
     "truncated file": ("convert cut.mesh o.vtu", "cut.mesh"),

@@ -61,3 +61,51 @@ def test_the_input_is_not_modified_and_roundoff_asymmetry_is_removed():
 def test_a_metric_of_anything_but_real_numbers_is_refused(values):
     with pytest.raises(TypeError, match="metric must hold real numbers, not "):
         metric.check_metric(values)
+
+
+def test_a_floor_repairs_what_is_not_definite_and_says_where(caplog):
+    M = random_metrics(30, 3, 0, 1.0)
+    M[17] = np.diag([4.0, -3.1e-4, 1.0])
+    M[20] = np.zeros((3, 3))
+    repaired = metric.check_metric(M, repair="floor")
+    np.testing.assert_allclose(np.linalg.eigvalsh(repaired[17]), [4e-12, 1.0, 4.0])
+    assert np.linalg.eigvalsh(repaired[20]).min() > 0.0
+    good = np.delete(np.arange(30), [17, 20])
+    assert np.array_equal(repaired[good], metric.check_metric(M[good]))
+    assert (
+        "metric at point 17 was not positive definite: smallest eigenvalue -3.1e-04" in caplog.text
+    )
+    assert "(and 1 more points)" in caplog.text
+
+
+def test_a_repair_never_hides_nan_nor_makes_a_metric_of_nothing():
+    M = random_metrics(5, 2)
+    M[3, 0, 0] = np.nan
+    with pytest.raises(metric.MetricError, match="metric at point 3 is not finite: nan"):
+        metric.check_metric(M, repair="floor")
+    with pytest.raises(metric.MetricError, match="no positive eigenvalue to repair it by"):
+        metric.check_metric(-np.tile(np.eye(2), (3, 1, 1)), repair="floor")
+    with pytest.raises(ValueError, match="repair must be one of raise, floor, got 'abs'"):
+        metric.check_metric(M, repair="abs")
+
+
+def test_a_tensor_that_is_singular_in_double_precision_is_no_metric():
+    v = np.array([1.0, 1.0, 1.0]) / 3**0.5
+    M = random_metrics(4, 3)
+    M[2] = 1e17 * np.outer(v, v) + np.eye(3)
+    with pytest.raises(metric.MetricError, match="metric at point 2 is not positive definite"):
+        metric.check_metric(M)
+
+
+@pytest.mark.parametrize(
+    ("operation", "call"),
+    [
+        ("the bounds", lambda M: metric.bounded(M, h_min=1e-200, h_max=1e-190)),
+        ("the log-Euclidean mean", lambda M: metric.mean([1e300 * M, 1e300 * M * 1e8])),
+        ("the squares of the sizes", lambda M: metric.from_sizes(1e-200 * np.ones(3))),
+    ],
+)
+def test_the_operation_that_overflows_is_named(operation, call):
+    M = np.tile(np.eye(2), (3, 1, 1))
+    with np.errstate(all="ignore"), pytest.raises(metric.MetricError, match=operation):
+        call(M)

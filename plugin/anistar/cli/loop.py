@@ -38,7 +38,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--complexities", type=numbers, metavar="C,C,...", help="target of each turn"
     )
-    parser.add_argument("--target-error", type=float, metavar="X", help="stop at this L2 error")
+    parser.add_argument(
+        "--target-error",
+        dest="stop_at_error",
+        type=float,
+        metavar="X",
+        help="stop at this L2 error",
+    )
     parser.add_argument("--max-iterations", type=int, default=20, metavar="N")
     parser.add_argument("--field", action="append", metavar="NAME", help="field for the metric")
     parser.add_argument("--format", "--files", choices=tuple(FILE_KINDS), default="mesh")
@@ -47,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="go on after the steps that the folder holds, as after a crash",
     )
-    add_metric_options(parser)
+    add_metric_options(parser, without=("target_error",))
     add_remesh_options(parser)
     add_transfer_method_option(parser)
 
@@ -57,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
     options = LoopOptions(
         adapt=adapt_options(arguments, metric_fields=arguments.field),
         complexities=arguments.complexities,
-        target_error=arguments.target_error,
+        target_error=arguments.stop_at_error,
         max_iterations=arguments.max_iterations,
     )
     mesh, _ = read(arguments.input)

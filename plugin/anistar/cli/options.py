@@ -40,11 +40,23 @@ def _listed(text: str, kind: Callable[[str], Number], what: str) -> tuple[Number
         raise argparse.ArgumentTypeError(f"{text!r} is no list of {what} like 1,2,3") from error
 
 
+def _scale(text: str) -> Any:
+    """Parse the scale of the fields: a word, a number, or one for each field."""
+    if "=" in text:
+        pairs = (pair.partition("=") for pair in text.split(","))
+        return {name: _scale(value) for name, _, value in pairs}
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def _switch(text: str) -> bool:
-    """Parse on or off."""
-    if text not in ("on", "off"):
+    """Parse on or off; PETSc says 1, true or nothing."""
+    known = {"on": True, "1": True, "true": True, "off": False, "0": False, "false": False}
+    if text not in known:
         raise argparse.ArgumentTypeError(f"must be on or off, not {text!r}")
-    return text == "on"
+    return known[text]
 
 
 _METRIC: dict[str, tuple[Any, str]] = {
@@ -53,10 +65,21 @@ _METRIC: dict[str, tuple[Any, str]] = {
         "complexity of the metric; a 2D mesh gets about 1.15 times as many points",
     ),
     "target_elements": (float, "number of elements to aim at, instead of a complexity"),
+    "target_error": (float, "interpolation error to aim at, in units of the scale"),
+    "max_elements": (float, "number of elements never to exceed"),
+    "scale": (
+        _scale,
+        "what fields are compared by: complexity, range, std, none, a number, or u=range,v=2",
+    ),
+    "intersection_rule": (str, "of more than two metrics: pairwise or john"),
     "p": (float, "norm Lp in which the interpolation error is smallest (default 2)"),
     "h_min": (float, "smallest size, in mesh units (Mmg: -hmin)"),
     "h_max": (float, "largest size, in mesh units (Mmg: -hmax)"),
     "a_max": (_number_or_off("a_max"), "largest anisotropy, or off"),
+    "restrict_anisotropy_first": (
+        _switch,
+        "apply the largest anisotropy to the Hessians as well: on or off",
+    ),
     "gradation_factor": (
         _number_or_off("gradation_factor"),
         "growth of sizes from edge to edge, or off, or auto (Mmg: -hgrad)",
@@ -108,13 +131,14 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "threads": (int, "for the certificate"),
 }
 
-_OPTIONAL_VALUE = {"until_consistent": True}
+_OPTIONAL_VALUE = {"until_consistent": True, "restrict_anisotropy_first": True}
 """Flags that may stand alone, and what they then mean."""
 
 
-def add_metric_options(parser: argparse.ArgumentParser) -> None:
-    """Add the flags of `MetricOptions`."""
-    _add(parser.add_argument_group("metric"), _METRIC)
+def add_metric_options(parser: argparse.ArgumentParser, *, without: Sequence[str] = ()) -> None:
+    """Add the flags of `MetricOptions`, except those of which the command has its own."""
+    table = {name: entry for name, entry in _METRIC.items() if name not in without}
+    _add(parser.add_argument_group("metric"), table)
 
 
 def add_remesh_options(parser: argparse.ArgumentParser) -> None:
