@@ -28,11 +28,16 @@ def grade(
     *,
     model: str,
     log_factor: float,
+    max_distortion: float,
     tolerance: float,
     max_rounds: int,
 ) -> Growth:
     """Grade `metric` along `graph`, see `growth.grade`."""
-    bounds = {"log_factor": log_factor, "tolerance": tolerance}
+    bounds = {
+        "log_factor": log_factor,
+        "max_distortion": max_distortion,
+        "tolerance": tolerance,
+    }
     if core is None:
         return growth.grade(points, metric, graph, model=model, max_rounds=max_rounds, **bounds)
     graded, rounds, updates, converged = core.grade(

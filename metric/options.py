@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .aliases import flattened, our_name, our_value
 from .bounds import check_bounds
 from .complexity import ELEMENTS_PER_COMPLEXITY
-from .gradation import DEFAULT_FACTORS, check_gradation
+from .gradation import DEFAULT_FACTORS, GrowthLaw
 from .normalisation import check_normalisation
 from .recovery import check_method
 
@@ -41,6 +41,8 @@ class MetricOptions:
         Growth of sizes from one unit edge to the next; "auto" is 1.5 in 2D and 1.3 in 3D.
     gradation_model : {"physical", "metric", "mixed"}
         Law of the growth, see `graded`.
+    max_distortion : float, optional
+        Bound on ln gamma over one unit edge, see `graded` and `distortion`.
     method : {"auto", "quadratic", "l2"}
         Recovery of the Hessian, see `recover_hessian`.
     """
@@ -53,6 +55,7 @@ class MetricOptions:
     a_max: Bound = None
     gradation_factor: float | str | None = "auto"
     gradation_model: str = "physical"
+    max_distortion: float | None = None
     method: str = "auto"
 
     def __post_init__(self) -> None:
@@ -72,7 +75,7 @@ class MetricOptions:
         factor = self.gradation_factor
         if isinstance(factor, str) and factor != "auto":
             raise ValueError(f"gradation_factor must be a number, None or 'auto', got {factor!r}")
-        check_gradation(None if isinstance(factor, str) else factor, self.gradation_model)
+        self.gradation_for(2)
         check_method(self.method)
 
     @classmethod
@@ -114,8 +117,11 @@ class MetricOptions:
             return self.target_elements / ELEMENTS_PER_COMPLEXITY[dim]
         raise ValueError("give target_complexity or target_elements, got neither")
 
-    def gradation_for(self, dim: int) -> float | None:
-        """Return the gradation factor in dimension `dim`."""
-        if isinstance(self.gradation_factor, str):
-            return DEFAULT_FACTORS[dim]
-        return self.gradation_factor
+    def gradation_for(self, dim: int) -> GrowthLaw:
+        """Return the law of the gradation in dimension `dim`."""
+        factor = self.gradation_factor
+        return GrowthLaw(
+            factor=DEFAULT_FACTORS[dim] if isinstance(factor, str) else factor,
+            model=self.gradation_model,
+            max_distortion=self.max_distortion,
+        )

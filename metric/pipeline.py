@@ -17,7 +17,7 @@ from .checks import check_fields
 from .combination import intersected
 from .complexity import integral_of_exponential
 from .distortion import distortion
-from .gradation import grade_on
+from .gradation import GrowthLaw, grade_on
 from .graph import VertexGraph, wide_graph
 from .growth import Growth
 from .ledger import Ledger, Stage
@@ -105,15 +105,14 @@ class _Finishing:
     h_min: Array | None
     h_max: Array
     a_max: Array | None
-    factor: float | None
-    model: str
+    law: GrowthLaw
 
     def attempt(self, M: Array) -> tuple[float, tuple[Array, Growth]]:
         bounded = clipped(M, self.h_min, self.h_max, self.a_max)
-        if self.factor is None:
+        if self.law.is_off:
             growth = Growth(metric=bounded, rounds=0, updates=0, converged=True)
         else:
-            growth = grade_on(self.graph, self.mesh.points, bounded, self.factor, self.model)
+            growth = grade_on(self.graph, self.mesh.points, bounded, self.law)
             # an intersection of metrics within the bounds can exceed them by some per cent
             growth = replace(growth, metric=clipped(growth.metric, self.h_min, None, self.a_max))
         return self.complexity(growth.metric), (bounded, growth)
@@ -137,8 +136,7 @@ def _finishing(mesh: MeshLike, options: MetricOptions) -> _Finishing:
         h_min=low,
         h_max=high,
         a_max=ratio,
-        factor=options.gradation_for(d),
-        model=options.gradation_model,
+        law=options.gradation_for(d),
     )
 
 
