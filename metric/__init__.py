@@ -19,6 +19,7 @@ from .options import MetricOptions
 from .pipeline import from_fields
 from .recovery import recover_hessian
 from .sizes import from_sizes
+from .tensor_orders import from_components, to_components
 
 __all__ = [
     "ELEMENTS_PER_COMPLEXITY",
@@ -33,6 +34,7 @@ __all__ = [
     "complexity",
     "distortion",
     "exp_metric",
+    "from_components",
     "from_fields",
     "from_sizes",
     "graded",
@@ -44,4 +46,5 @@ __all__ = [
     "normalised",
     "recover_hessian",
     "sqrt_metric",
+    "to_components",
 ]

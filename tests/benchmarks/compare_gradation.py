@@ -207,7 +207,11 @@ def adapted(case: Case, law: GrowthLaw, complexity: float) -> list[str]:
         mesh = done.mesh
     figures = quality(mesh, done.metric)
     stars = certify(mesh, done.metric).star_ok.mean()
-    error = "" if case.u is None else f"{mesh.n_points * l2_error(mesh, case.u(mesh.points), case.u):.3f}"
+    error = (
+        ""
+        if case.u is None
+        else f"{mesh.n_points * l2_error(mesh, case.u(mesh.points), case.u):.3f}"
+    )
     return [
         f"{100 * outcome.added:.0f}",
         *spread(mesh, done.metric),

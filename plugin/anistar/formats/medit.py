@@ -20,7 +20,7 @@ from . import gmf
 from .atomic import replaced
 from .raw import Array, Block, RawMesh
 from .suffixes import BINARY, SOLUTION_OF, solution_beside, suffix_of
-from .tensor_orders import from_components, to_components
+from ..metric.tensor_orders import from_components, to_components
 
 _log = logging.getLogger(__name__)
 
