@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .aliases import flattened, our_name, our_value
+from .aliases import advice, asks_nothing, flattened, our_name, our_value
 from .bounds import check_bounds
 from .complexity import ELEMENTS_PER_COMPLEXITY
 from .gradation import DEFAULT_FACTORS, GrowthLaw
@@ -83,7 +83,8 @@ class MetricOptions:
         """Build options from a dict that may use the names of PETSc or Mmg.
 
         Accepted are the names above, ``dm_plex_metric_*`` or ``{"dm_plex_metric": {...}}``, and
-        ``hmin hmax hgrad``. There, a gradation of -1 and an anisotropy of 0 mean off.
+        ``hmin hmax hgrad``. There, a gradation of -1 and an anisotropy of 0 mean off. Options that
+        have no counterpart here are passed over where they ask for nothing.
 
         Raises
         ------
@@ -95,9 +96,9 @@ class MetricOptions:
         for key, value in flattened(options):
             name = our_name(key)
             if name not in known:
-                raise ValueError(
-                    f"unknown metric option '{key}'; known: {', '.join(sorted(known))}"
-                )
+                if asks_nothing(key, value):
+                    continue
+                raise ValueError(f"unknown metric option '{key}': {advice(key, known)}")
             if name in found:
                 raise ValueError(f"metric option '{name}' is given twice, the second as '{key}'")
             found[name] = value if name == key else our_value(name, value)
