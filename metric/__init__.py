@@ -10,8 +10,16 @@ from .checks import MetricError, check_metric
 from .combination import intersected, mean
 from .complexity import ELEMENTS_PER_COMPLEXITY, complexity
 from .distortion import distortion
+from .goal import (
+    diffusion_hessian,
+    flux_hessian,
+    goal_metric,
+    weighted_hessian,
+    weighted_hessian_metric,
+)
 from .gradation import graded
 from .graph import mesh_edges
+from .indicators import dwr_metric
 from .ledger import Ledger, Stage
 from .mesh import MeshLike
 from .normalisation import normalised
@@ -32,11 +40,15 @@ __all__ = [
     "bounded",
     "check_metric",
     "complexity",
+    "diffusion_hessian",
     "distortion",
+    "dwr_metric",
     "exp_metric",
+    "flux_hessian",
     "from_components",
     "from_fields",
     "from_sizes",
+    "goal_metric",
     "graded",
     "interpolated",
     "intersected",
@@ -47,4 +59,6 @@ __all__ = [
     "recover_hessian",
     "sqrt_metric",
     "to_components",
+    "weighted_hessian",
+    "weighted_hessian_metric",
 ]

@@ -35,6 +35,7 @@ Floats = NDArray[np.float64]
 Function = Callable[[Floats], Floats]
 
 PASSES = 4
+GRID_3D = 26**3
 LAYER = 0.001  # smallest size of the layers given as metrics, before scaling
 
 LAWS = {
@@ -224,7 +225,7 @@ def adapted(case: Case, law: GrowthLaw, complexity: float) -> list[str]:
 
 def on_a_grid(case: Case, law: GrowthLaw, complexity: float) -> list[str]:
     """Return the row of a 3D case: the metric alone."""
-    mesh = grid(40**3, 3, case.has_hole)
+    mesh = grid(GRID_3D, 3, case.has_hole)
     outcome = graded_to(mesh, case.metric(mesh.points), law, complexity)
     error = ""
     if case.u is not None:
