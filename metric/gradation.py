@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from . import kernels
 from .checks import check_metric
-from .graph import VertexGraph, wide_graph
+from .graph import VertexGraph
 from .growth import Growth
 from .mesh import MeshLike
 
@@ -132,7 +132,7 @@ def graded(
     check_tolerance(tolerance)
     if law.is_off:
         return M
-    return grade_on(wide_graph(mesh), mesh.points, M, law, tolerance).metric
+    return grade_on(kernels.wide_graph(mesh), mesh.points, M, law, tolerance).metric
 
 
 def check_tolerance(tolerance: float) -> None:

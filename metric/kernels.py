@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import graph as graphs
 from . import growth
 from .graph import VertexGraph
 from .growth import Growth
+from .mesh import MeshLike
 
 Array = NDArray[np.float64]
 
@@ -50,3 +52,12 @@ def grade(
         **bounds,
     )
     return Growth(metric=graded, rounds=rounds, updates=updates, converged=converged)
+
+
+def wide_graph(mesh: MeshLike) -> VertexGraph:
+    """Return the graph of the edges and opposite vertices, see `graph.wide_graph`."""
+    if core is None:
+        return graphs.wide_graph(mesh)
+    cells = np.ascontiguousarray(mesh.cells, dtype=np.int32)
+    offsets, neighbours = core.wide_graph(cells, len(mesh.points))
+    return VertexGraph(offsets=offsets, neighbours=neighbours)

@@ -18,8 +18,9 @@ from .combination import intersected
 from .complexity import integral_of_exponential
 from .distortion import distortion
 from .gradation import GrowthLaw, grade_on
-from .graph import VertexGraph, wide_graph
+from .graph import VertexGraph
 from .growth import Growth
+from .kernels import wide_graph
 from .ledger import Ledger, Stage
 from .mesh import MeshLike, cell_volumes, diameter
 from .normalisation import SMALLEST_FLOOR, normalised

@@ -49,3 +49,8 @@ def remesh2(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), o
     """
     A mesh of the geometry with unit edges in the metric that the mesh (points, cells) carries.
     """
+
+def wide_graph(cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], n_points: int) -> tuple:
+    """
+    The graph of the edges of a mesh and of the vertices opposite across facets; returns (offsets, neighbours).
+    """

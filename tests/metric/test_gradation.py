@@ -94,6 +94,25 @@ def test_opposite_vertices_shorten_the_paths_of_the_edges():
     assert inner not in ring
 
 
+@both_dims
+def test_the_compiled_and_the_numpy_graph_agree(dim):
+    mesh = box(7 if dim == 2 else 5, dim)
+    new = np.random.default_rng(4).permutation(len(mesh.points))
+    loose = np.vstack([mesh.points, mesh.points[:2] + 5.0])  # points of no cell have no neighbours
+    for cells in (mesh.cells, new[mesh.cells], mesh.cells[::3]):
+        other = from_arrays(loose, cells)
+        compiled, plain = kernels.wide_graph(other), wide_graph(other)
+        assert np.array_equal(compiled.offsets, plain.offsets)
+        assert np.array_equal(compiled.neighbours, plain.neighbours)
+
+
+def test_the_core_refuses_cells_that_make_no_graph():
+    with pytest.raises(ValueError, match="vertex 9 is out of range for 9 points"):
+        kernels.core.wide_graph(np.array([[0, 1, 9]], dtype=np.int32), 9)
+    with pytest.raises(ValueError, match="cells must have 3 or 4 vertices, not 5"):
+        kernels.core.wide_graph(np.zeros((1, 5), dtype=np.int32), 9)
+
+
 def test_the_edges_are_those_of_the_cells_once_each():
     mesh = box(3, 3)
     edges = metric.mesh_edges(mesh)
