@@ -38,7 +38,7 @@ class MetricOptions:
     a_max : float or ndarray (n,), optional
         Largest ratio of sizes at a point.
     gradation_factor : float, None or "auto"
-        Growth of sizes from one unit edge to the next; "auto" is 1.5 in 2D and 1.3 in 3D.
+        Growth of sizes from one unit edge to the next; "auto" is 1.5 in 2D and 2 in 3D.
     gradation_model : {"physical", "metric", "mixed"}
         Law of the growth, see `graded`.
     max_distortion : float, optional
@@ -54,7 +54,7 @@ class MetricOptions:
     h_max: Bound = None
     a_max: Bound = None
     gradation_factor: float | str | None = "auto"
-    gradation_model: str = "physical"
+    gradation_model: str = "mixed"
     max_distortion: float | None = None
     method: str = "auto"
 
