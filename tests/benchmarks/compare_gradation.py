@@ -251,7 +251,7 @@ def time_a_million() -> None:
     mesh = grid(10**6, 3, False)
     M = CASES[-1].metric(mesh.points)
     M *= (60_000 / metric.complexity(mesh, M)) ** (2 / 3)
-    console = Console()
+    console = Console(width=120)
     for name, law in LAWS.items():
         started = time.process_time()
         graph = wide_graph(mesh)
