@@ -13,9 +13,17 @@ from .curvature import curvature_metric
 from .distortion import distortion
 from .error_model import predicted_error
 from .estimate import Estimate, estimate
+from .goal import (
+    diffusion_hessian,
+    flux_hessian,
+    goal_metric,
+    weighted_hessian,
+    weighted_hessian_metric,
+)
 from .gradation import graded
 from .graph import mesh_edges
 from .implied import implied_metric
+from .indicators import dwr_metric
 from .instants import SpaceTimeLedger, from_instants
 from .ledger import Ledger, Stage
 from .mesh import MeshLike
@@ -33,6 +41,7 @@ from .recovery import (
 )
 from .size_fields import size_in_box, size_near_boundary, size_near_points
 from .sizes import from_sizes
+from .tensor_orders import from_components, to_components
 
 __all__ = [
     "ELEMENTS_PER_COMPLEXITY",
@@ -51,12 +60,17 @@ __all__ = [
     "check_metric",
     "complexity",
     "curvature_metric",
+    "diffusion_hessian",
     "distortion",
+    "dwr_metric",
     "estimate",
     "exp_metric",
+    "flux_hessian",
+    "from_components",
     "from_fields",
     "from_instants",
     "from_sizes",
+    "goal_metric",
     "graded",
     "implied_metric",
     "interpolated",
@@ -76,4 +90,7 @@ __all__ = [
     "size_near_boundary",
     "size_near_points",
     "sqrt_metric",
+    "to_components",
+    "weighted_hessian",
+    "weighted_hessian_metric",
 ]

@@ -11,9 +11,10 @@ from .algebra import log_determinant
 from .bounds import check_bounds, clipped
 from .checks import check_result
 from .complexity import integral_of_exponential
-from .gradation import grade_on
-from .graph import VertexGraph, wide_graph
+from .gradation import GrowthLaw, grade_on
+from .graph import VertexGraph
 from .growth import Growth
+from .kernels import wide_graph
 from .ledger import Stage
 from .mesh import MeshLike, cell_volumes, diameter
 from .options import MetricOptions
@@ -31,8 +32,7 @@ class Finishing:
     h_min: Array | None
     h_max: Array
     a_max: Array | None
-    factor: float | None
-    model: str
+    law: GrowthLaw
 
     def bounded(self, M: Array) -> Array:
         """Bound a metric."""
@@ -41,9 +41,9 @@ class Finishing:
     def finished(self, M: Array) -> Growth:
         """Bound and grade a metric."""
         bounded = self.bounded(M)
-        if self.factor is None:
+        if self.law.is_off:
             return Growth(metric=bounded, rounds=0, updates=0, converged=True)
-        growth = grade_on(self.graph, self.mesh.points, bounded, self.factor, self.model)
+        growth = grade_on(self.graph, self.mesh.points, bounded, self.law)
         # an intersection of metrics within the bounds can exceed them by some per cent
         return replace(growth, metric=clipped(growth.metric, self.h_min, None, self.a_max))
 
@@ -71,6 +71,5 @@ def finishing_on(mesh: MeshLike, options: MetricOptions) -> Finishing:
         h_min=low,
         h_max=high,
         a_max=ratio,
-        factor=options.gradation_for(d),
-        model=options.gradation_model,
+        law=options.gradation_for(d),
     )

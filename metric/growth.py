@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +14,19 @@ from .simultaneous_reduction import intersection
 
 Array = NDArray[np.float64]
 
-BAND = 0.25
-"""A round takes the raised vertices whose determinant is at least this share of the largest."""
+BUCKETS_PER_OCTAVE = 2.0
+"""Buckets of the queue per factor 2 of the determinant, as in the core."""
+
+BUCKET_SHIFT = 0.17
+"""Moves the borders of the buckets away from the powers of two of round sizes."""
+
+LAST_BUCKET = 1000 * BUCKETS_PER_OCTAVE
+"""The last bucket takes what is beyond 2^-1000 of the largest determinant."""
+
+LOG_STEPS = 2.0**20
+"""Determinants count as equal when their logarithms are, to this many parts of one."""
+
+IDLE = np.iinfo(np.int64).max
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,54 +56,101 @@ def grade(
     *,
     model: str,
     log_factor: float,
+    max_distortion: float,
     tolerance: float,
     max_rounds: int,
 ) -> Growth:
     """Raise `metric` until each vertex satisfies the growth law of all its neighbours.
 
     A round takes the densest of the vertices that were raised, and intersects what they ask
-    with the metrics of their neighbours, for each neighbour in increasing order of the asking
-    vertex.
+    with the metrics of their neighbours, for each neighbour the densest of the asking vertices
+    first: the result does not depend on how the points are numbered.
     """
-    sources, M = graph.sources, metric.copy()
-    raised = _density(M)
+    law = partial(grown, model=model, log_factor=log_factor, max_distortion=max_distortion)
+    M = metric.copy()
+    densest = float(_density(M).max(initial=0.0))
+    bucket = _buckets(M, densest)
     rounds = updates = 0
-    while raised.any():
+    while (bucket < IDLE).any():
         if rounds == max_rounds:
             return Growth(metric=M, rounds=rounds, updates=updates, converged=False)
         rounds += 1
-        front = raised >= BAND * raised.max()
-        raised[front] = 0.0
-        active = np.flatnonzero(front[sources])
-        p, q = sources[active], graph.neighbours[active]
+        front = np.flatnonzero(bucket == bucket.min())
+        front = front[_order(points[front], M[front])]
+        bucket[front] = IDLE
+        at, q = _edges_from(front, graph)
         values, vectors = eigh(M[front])
-        at = np.cumsum(front)[p] - 1
-        asked = grown(values[at], vectors[at], points[q] - points[p], model, log_factor)
+        asked = law(values[at], vectors[at], points[q] - points[front[at]])
         requests = compose(asked, vectors[at])
         for turn in _turns(q):
             M[q[turn]], changed = intersection(M[q[turn]], requests[turn], tolerance)
-            raised[q[turn][changed]] = _density(M[q[turn][changed]])
+            raised = q[turn][changed]
+            bucket[raised] = _buckets(M[raised], densest)
             updates += int(changed.sum())
     return Growth(metric=M, rounds=rounds, updates=updates, converged=True)
 
 
-def grown(values: Array, vectors: Array, v: Array, model: str, log_factor: float) -> Array:
+def grown(
+    values: Array,
+    vectors: Array,
+    v: Array,
+    *,
+    model: str,
+    log_factor: float,
+    max_distortion: float = np.inf,
+) -> Array:
     """Eigenvalues (k, d) of what metrics of the given spectra ask at the ends of edges `v`."""
-    length = np.linalg.norm(v, axis=1)[:, None]
-    physical = 1.0 + np.sqrt(values) * length * log_factor
-    if model == "physical":
-        return np.asarray(values / physical**2)
     along = np.einsum("kij,ki->kj", vectors, v)
-    uniform = 1.0 + np.sqrt((values * along**2).sum(axis=1))[:, None] * log_factor
+    length = np.sqrt((values * along**2).sum(axis=1))[:, None]
+    growth = np.asarray(_model_growth(values, v, length, model, log_factor))
+    if np.isfinite(max_distortion):
+        growth = np.minimum(growth, 1.0 + length * max_distortion)
+    return np.asarray(values / growth**2)
+
+
+def _model_growth(
+    values: Array, v: Array, metric_length: Array, model: str, log_factor: float
+) -> Array | float:
+    """Growth of the sizes over the edges `v`, for each eigenvalue (k, d) or for all (k, 1)."""
+    if model == "none":
+        return np.inf
+    uniform: Array = 1.0 + metric_length * log_factor
     if model == "metric":
-        return np.asarray(values / uniform**2)
-    mixed = uniform * np.sqrt(np.sqrt(np.sqrt(physical / uniform)))
-    return np.asarray(values / mixed**2)
+        return uniform
+    length = np.linalg.norm(v, axis=1)[:, None]
+    physical: Array = 1.0 + np.sqrt(values) * length * log_factor
+    if model == "physical":
+        return physical
+    mixed: Array = uniform * np.sqrt(np.sqrt(np.sqrt(physical / uniform)))
+    return mixed
 
 
 def _density(M: Array) -> Array:
     """Order of the queue (n,), positive even where round-off eats the determinant."""
     return np.maximum(determinant(M), np.finfo(np.float64).tiny)
+
+
+def _buckets(M: Array, densest: float) -> NDArray[np.int64]:
+    """Bucket of the queue for each metric, the densest first."""
+    octaves = np.log2(densest / _density(M))
+    shifted = np.clip(octaves * BUCKETS_PER_OCTAVE + BUCKET_SHIFT, 0.0, LAST_BUCKET)
+    return np.asarray(shifted.astype(np.int64))
+
+
+def _order(points: Array, M: Array) -> NDArray[np.intp]:
+    """Order of a front: the densest first, and equally dense ones by their points."""
+    density = np.rint(np.log(_density(M)) * LOG_STEPS)
+    return np.lexsort((*points.T[::-1], -density))
+
+
+def _edges_from(
+    front: NDArray[np.intp], graph: VertexGraph
+) -> tuple[NDArray[np.intp], NDArray[np.int32]]:
+    """Edges that leave the vertices of `front`: the position in it, and the other end."""
+    counts = np.diff(graph.offsets)[front]
+    at = np.repeat(np.arange(len(front)), counts)
+    within = np.arange(len(at)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return at, graph.neighbours[graph.offsets[front][at] + within]
 
 
 def _turns(q: NDArray[np.int32]) -> list[NDArray[np.intp]]:

@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import graph as graphs
 from . import growth, simultaneous_reduction
 from .graph import VertexGraph
 from .growth import Growth
+from .mesh import MeshLike
 
 Array = NDArray[np.float64]
 
@@ -36,11 +38,16 @@ def grade(
     *,
     model: str,
     log_factor: float,
+    max_distortion: float,
     tolerance: float,
     max_rounds: int,
 ) -> Growth:
     """Grade `metric` along `graph`, see `growth.grade`."""
-    bounds = {"log_factor": log_factor, "tolerance": tolerance}
+    bounds = {
+        "log_factor": log_factor,
+        "max_distortion": max_distortion,
+        "tolerance": tolerance,
+    }
     if core is None:
         return growth.grade(points, metric, graph, model=model, max_rounds=max_rounds, **bounds)
     graded, rounds, updates, converged = core.grade(
@@ -53,3 +60,12 @@ def grade(
         **bounds,
     )
     return Growth(metric=graded, rounds=rounds, updates=updates, converged=converged)
+
+
+def wide_graph(mesh: MeshLike) -> VertexGraph:
+    """Return the graph of the edges and opposite vertices, see `graph.wide_graph`."""
+    if core is None:
+        return graphs.wide_graph(mesh)
+    cells = np.ascontiguousarray(mesh.cells, dtype=np.int32)
+    offsets, neighbours = core.wide_graph(cells, len(mesh.points))
+    return VertexGraph(offsets=offsets, neighbours=neighbours)

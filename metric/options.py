@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .aliases import flattened, our_name, our_value
+from .aliases import advice, asks_nothing, flattened, our_name, our_value
 from .bounds import check_bounds
 from .combination import check_rule
 from .complexity import ELEMENTS_PER_COMPLEXITY
-from .gradation import DEFAULT_FACTORS, check_gradation
+from .gradation import DEFAULT_FACTORS, GrowthLaw
 from .normalisation import check_p, check_target
 from .recovery import RecoveryOptions
 from .scaling import Scale, check_scale
@@ -54,9 +54,11 @@ class MetricOptions:
     restrict_anisotropy_first : bool
         Apply `a_max` to the Hessians as well, before they are normalised.
     gradation_factor : float, None or "auto"
-        Growth of sizes from one unit edge to the next; "auto" is 1.5 in 2D and 1.3 in 3D.
+        Growth of sizes from one unit edge to the next; "auto" is 1.5 in 2D and 2 in 3D.
     gradation_model : {"physical", "metric", "mixed"}
         Law of the growth, see `graded`.
+    max_distortion : float, optional
+        Bound on ln gamma over one unit edge, see `graded` and `distortion`.
     method : {"auto", "quadratic", "l2", "mixed_l2", "zz", "clement", "green"}
         Recovery of the Hessian, see `recover_hessian`.
     recovery_mass, recovery_boundary, interfaces, noise
@@ -75,7 +77,8 @@ class MetricOptions:
     a_max: Bound = None
     restrict_anisotropy_first: bool = False
     gradation_factor: float | str | None = "auto"
-    gradation_model: str = "physical"
+    gradation_model: str = "mixed"
+    max_distortion: float | None = None
     method: str = "auto"
     recovery_mass: str = "lumped"
     recovery_boundary: str = "auto"
@@ -105,7 +108,7 @@ class MetricOptions:
         factor = self.gradation_factor
         if isinstance(factor, str) and factor != "auto":
             raise ValueError(f"gradation_factor must be a number, None or 'auto', got {factor!r}")
-        check_gradation(None if isinstance(factor, str) else factor, self.gradation_model)
+        self.gradation_for(2)
         _ = self.recovery
 
     @property
@@ -124,7 +127,8 @@ class MetricOptions:
         """Build options from a dict that may use the names of PETSc or Mmg.
 
         Accepted are the names above, ``dm_plex_metric_*`` or ``{"dm_plex_metric": {...}}``, and
-        ``hmin hmax hgrad``. There, a gradation of -1 and an anisotropy of 0 mean off.
+        ``hmin hmax hgrad``. There, a gradation of -1 and an anisotropy of 0 mean off. Options that
+        have no counterpart here are passed over where they ask for nothing.
 
         Raises
         ------
@@ -136,9 +140,9 @@ class MetricOptions:
         for key, value in flattened(options):
             name = our_name(key)
             if name not in known:
-                raise ValueError(
-                    f"unknown metric option '{key}'; known: {', '.join(sorted(known))}"
-                )
+                if asks_nothing(key, value):
+                    continue
+                raise ValueError(f"unknown metric option '{key}': {advice(key, known)}")
             if name in found:
                 raise ValueError(f"metric option '{name}' is given twice, the second as '{key}'")
             found[name] = value if name == key else our_value(name, value)
@@ -163,8 +167,11 @@ class MetricOptions:
             return self.target_elements / ELEMENTS_PER_COMPLEXITY[dim]
         raise ValueError("give target_complexity or target_elements, got neither")
 
-    def gradation_for(self, dim: int) -> float | None:
-        """Return the gradation factor in dimension `dim`."""
-        if isinstance(self.gradation_factor, str):
-            return DEFAULT_FACTORS[dim]
-        return self.gradation_factor
+    def gradation_for(self, dim: int) -> GrowthLaw:
+        """Return the law of the gradation in dimension `dim`."""
+        factor = self.gradation_factor
+        return GrowthLaw(
+            factor=DEFAULT_FACTORS[dim] if isinstance(factor, str) else factor,
+            model=self.gradation_model,
+            max_distortion=self.max_distortion,
+        )

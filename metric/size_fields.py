@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .distance import distance_to_facets
-from .gradation import check_gradation
+from .gradation import GrowthLaw
 from .mesh import MeshLike, diameter
 
 Array = NDArray[np.float64]
@@ -116,7 +116,7 @@ def _grown(
     mesh: MeshLike, h: float, distance: Array, growth: float | None, h_far: float | None
 ) -> Array:
     """Return the size at a distance: ``h + distance ln b``, at most `h_far`."""
-    check_gradation(growth, "physical")
+    GrowthLaw(factor=growth, model="physical")  # raises if the factor is no growth
     far = diameter(mesh) if h_far is None else h_far
     if not (np.isfinite(far) and far >= h):
         raise ValueError(f"h_far must be at least h = {h:g}, got {far}")

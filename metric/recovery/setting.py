@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..graph import VertexGraph, wide_graph
+from ..graph import VertexGraph
+from ..kernels import wide_graph
 from ..mesh import MeshLike
 from .boundary import Boundary, boundary_of
 from .cells import CellGeometry, cell_geometry

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from .metric.aliases import MMG_ALIASES, flattened, our_name, our_value
+from .metric.aliases import MMG_ALIASES, advice, asks_nothing, flattened, our_name, our_value
 
 #: Mmg's spelling of an option, and ours.
 MMG = {**MMG_ALIASES, "hausd": "hausdorff_number", "ar": "ridge_angle"}
@@ -39,7 +38,10 @@ def canonical(options: Mapping[str, Any], known: Known) -> dict[str, dict[str, A
         name = our_name(given, MMG)
         owner = next((stage for stage in stages if name in known[stage]), None)
         if owner is None:
-            raise ValueError(_unknown(given, [item for stage in stages for item in known[stage]]))
+            if asks_nothing(given, value):
+                continue
+            names = [item for stage in stages for item in known[stage]]
+            raise ValueError(f"unknown option {given!r}: {advice(given, names)}")
         if name in found[owner]:
             raise ValueError(f"option {name!r} is given twice (here as {given!r})")
         found[owner][name] = value if name == given else our_value(name, value)
@@ -57,9 +59,3 @@ def _placed(
             yield from (((key,), name, item) for name, item in flattened(value))
         else:
             yield stages, key, value
-
-
-def _unknown(name: str, known: Sequence[str]) -> str:
-    near = difflib.get_close_matches(name, (*known, *MMG), n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"options: {', '.join(sorted(set(known)))}"
-    return f"unknown option {name!r}: {hint}"

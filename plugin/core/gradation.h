@@ -11,16 +11,18 @@ namespace anistar {
 /// How a metric M_p grows with the distance from p (b is the gradation factor):
 /// each eigenvalue by itself, lambda / (1 + sqrt(lambda) |pq| ln b)^2; all by one
 /// factor, M_p / (1 + l ln b)^2 with l the length of pq in M_p; or the geometric mean
-/// of the two with weights 1/8 and 7/8. Source: Alauzet, Size gradation control of
-/// anisotropic meshes, 2010, sections 6.1, 6.2.
-enum class GrowthModel { Physical, Metric, Mixed };
+/// of the two with weights 1/8 and 7/8. None asks nothing of its own. Source: Alauzet,
+/// Size gradation control of anisotropic meshes, 2010, sections 6.1, 6.2.
+enum class GrowthModel { None, Physical, Metric, Mixed };
 
 enum class GradationStop { Converged, RoundLimit };
 
 struct GradationOptions {
   GrowthModel model;
   double log_factor; ///< ln b > 0
-  double tolerance;  ///< a metric is raised only where this share is missing
+  double
+      max_distortion; ///< of a unit edge: growth stays below 1 + l times this; or inf
+  double tolerance;   ///< a metric is raised only where this share is missing
   std::size_t max_rounds;
 };
 
@@ -33,9 +35,9 @@ template <std::size_t d> struct Graded {
 
 /// Raises `metric` until M_q is at least the grown M_p for all neighbours p, q.
 /// The work queue holds the vertices that were raised; a round takes the densest of
-/// them and intersects, in increasing order of p, what they ask with their neighbours.
-/// Never coarsens, leaves a graded metric untouched, and depends on nothing but its
-/// arguments.
+/// them and intersects, the densest first, what they ask with their neighbours.
+/// Never coarsens, leaves a graded metric untouched, and does not depend on how the
+/// points are numbered.
 /// @pre the metrics are positive definite; neighbours of v are neighbours[offsets[v]]
 /// to
 ///      neighbours[offsets[v + 1]], all in range.

@@ -190,7 +190,7 @@ class TestOptionsFromPlainNames:
         ("given", "message"),
         [
             ({"h_mim": 1.0}, "unknown option 'h_mim': did you mean 'h_min'"),
-            ({"zzz": 1.0}, "unknown option 'zzz': options: a_max,"),
+            ({"zzz": 1.0}, "unknown option 'zzz': known: a_max,"),
             ({"hmin": 1.0, "h_min": 2.0}, "option 'h_min' is given twice"),
             ({"h_min": -1.0}, "h_min"),
             ({"method": "magic"}, "recovery method must be one of auto, quadratic, l2, mixed"),

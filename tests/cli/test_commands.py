@@ -87,6 +87,15 @@ def test_options_go_by_our_names_petsc_s_and_mmg_s(folder, flags):
     assert np.linalg.eigvalsh(M).max() <= 0.02**-2 * (1 + 1e-9)
 
 
+def test_metric_bounds_the_distortion_by_each_law(folder, capsys):
+    words = "metric in.vtu --field u --target-complexity 300 -o m.sol --json"
+    for model in ("physical", "metric", "mixed"):
+        assert run(words, "--gradation-model", model, "--max-distortion", "0.3") == 0
+        assert report_of(capsys)["distortion"]["max"] <= 0.301
+    assert run(words, "--max-distortion", "off") == 0
+    assert report_of(capsys)["distortion"]["max"] > 0.31
+
+
 def test_metric_reaches_the_complexity_and_prints_the_ledger(folder, capsys):
     assert run("metric in.vtu --field u --target-complexity 300 -o m.sol") == 0
     mesh = read("in.vtu")[0]

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from metric_meshes import box, is_at_least, random_metrics, stretched, tanh_layer
+from metric_meshes import box, from_arrays, is_at_least, random_metrics, stretched, tanh_layer
 
 from anistar import metric
 from anistar.metric import growth, kernels
@@ -36,18 +36,22 @@ def test_every_edge_satisfies_the_growth_law_after_gradation(dim, model):
     p, q = graph.sources, graph.neighbours
     values, vectors = eigh(graded)
     v = mesh.points[q] - mesh.points[p]
-    asked = growth.grown(values[p], vectors[p], v, model, np.log(1.4))
+    asked = growth.grown(values[p], vectors[p], v, model=model, log_factor=np.log(1.4))
     needed = np.einsum("nij,nj,nkj->nik", vectors[p], asked, vectors[p])
     assert is_at_least(graded[q], needed, 1.1e-5)
 
 
 @both_dims
-@all_models
-def test_the_compiled_and_the_numpy_gradation_agree(dim, model):
+@pytest.mark.parametrize(
+    ("model", "bound"),
+    [(model, np.inf) for model in MODELS] + [("none", 0.2), ("physical", 0.25), ("mixed", 0.2)],
+)
+def test_the_compiled_and_the_numpy_gradation_agree(dim, model, bound):
     assert kernels.core is not None, "the compiled core is not built"
     mesh = box(16 if dim == 2 else 5, dim, 0.2)
     M, graph = layer_metric(mesh), wide_graph(mesh)
-    law = {"model": model, "log_factor": 0.3, "tolerance": 1e-5, "max_rounds": 10_000}
+    law = {"model": model, "log_factor": 0.3, "max_distortion": bound}
+    law |= {"tolerance": 1e-5, "max_rounds": 10_000}
     compiled = kernels.grade(mesh.points, M, graph, **law)
     plain = growth.grade(mesh.points, M, graph, **law)
     assert compiled.rounds == plain.rounds
@@ -88,6 +92,25 @@ def test_opposite_vertices_shorten_the_paths_of_the_edges():
     ring = wide.neighbours[wide.offsets[inner] : wide.offsets[inner + 1]]
     assert len(ring) == 12
     assert inner not in ring
+
+
+@both_dims
+def test_the_compiled_and_the_numpy_graph_agree(dim):
+    mesh = box(7 if dim == 2 else 5, dim)
+    new = np.random.default_rng(4).permutation(len(mesh.points))
+    loose = np.vstack([mesh.points, mesh.points[:2] + 5.0])  # points of no cell have no neighbours
+    for cells in (mesh.cells, new[mesh.cells], mesh.cells[::3]):
+        other = from_arrays(loose, cells)
+        compiled, plain = kernels.wide_graph(other), wide_graph(other)
+        assert np.array_equal(compiled.offsets, plain.offsets)
+        assert np.array_equal(compiled.neighbours, plain.neighbours)
+
+
+def test_the_core_refuses_cells_that_make_no_graph():
+    with pytest.raises(ValueError, match="vertex 9 is out of range for 9 points"):
+        kernels.core.wide_graph(np.array([[0, 1, 9]], dtype=np.int32), 9)
+    with pytest.raises(ValueError, match="cells must have 3 or 4 vertices, not 5"):
+        kernels.core.wide_graph(np.zeros((1, 5), dtype=np.int32), 9)
 
 
 def test_the_edges_are_those_of_the_cells_once_each():
@@ -152,6 +175,43 @@ def test_none_means_off():
     assert np.array_equal(metric.graded(mesh, M, factor=None), metric.check_metric(M))
 
 
+def turning_layer(points):
+    """Sizes .004 across and .2 along circles around a corner: fast rotation along them."""
+    r = np.linalg.norm(points, axis=1) + 1e-9
+    e = points / r[:, None]
+    across = e[:, :, None] * e[:, None, :]
+    return 0.004**-2 * across + 0.2**-2 * (np.eye(points.shape[1]) - across)
+
+
+@both_dims
+@pytest.mark.parametrize("factor", [None, 1.5])
+def test_max_distortion_bounds_ln_gamma_of_every_edge(dim, factor):
+    mesh = box(24 if dim == 2 else 7, dim, 0.2)
+    M = turning_layer(mesh.points)
+    physical = metric.graded(mesh, M, factor=1.5)
+    graded = metric.graded(mesh, M, factor=factor, max_distortion=0.3)
+    assert metric.distortion(mesh, physical).max() > 0.6
+    # what the tolerance lets pass, 5e-6 of ln gamma, is divided by the length of the edge
+    assert metric.distortion(mesh, graded).max() < 0.301
+    assert is_at_least(graded, M)
+    again = metric.graded(mesh, graded, factor=factor, max_distortion=0.3)
+    assert np.array_equal(again, graded)
+
+
+@both_dims
+@all_models
+def test_the_numbering_of_the_points_does_not_matter(dim, model):
+    mesh = box(12 if dim == 2 else 5, dim, 0.2)
+    M = random_metrics(len(mesh.points), dim, 5, 1.5)
+    new = np.random.default_rng(0).permutation(len(M))
+    points, metrics = np.empty_like(mesh.points), np.empty_like(M)
+    points[new], metrics[new] = mesh.points, M
+    renumbered = from_arrays(points, new[mesh.cells])
+    graded = metric.graded(mesh, M, model=model, max_distortion=0.4)
+    again = metric.graded(renumbered, metrics, model=model, max_distortion=0.4)
+    assert np.array_equal(again[new], graded)
+
+
 def test_bad_arguments_are_named():
     mesh = box(2, 2)
     M = metric.from_sizes(np.ones(9))
@@ -159,6 +219,8 @@ def test_bad_arguments_are_named():
         metric.graded(mesh, M, factor=1.0)
     with pytest.raises(ValueError, match="must be one of physical, metric, mixed, got 'slow'"):
         metric.graded(mesh, M, model="slow")
+    with pytest.raises(ValueError, match=r"max_distortion must be above 0 .*, got 0.0"):
+        metric.graded(mesh, M, max_distortion=0.0)
     with pytest.raises(ValueError, match="tolerance must be between 0 and 1, got 0"):
         metric.graded(mesh, M, tolerance=0)
 
@@ -166,7 +228,8 @@ def test_bad_arguments_are_named():
 def test_the_core_refuses_arrays_that_do_not_fit():
     mesh = box(2, 2)
     M, graph = metric.from_sizes(np.ones(9)), wide_graph(mesh)
-    law = {"model": "physical", "log_factor": 0.3, "tolerance": 1e-5, "max_rounds": 10}
+    law = {"model": "physical", "log_factor": 0.3, "max_distortion": np.inf}
+    law |= {"tolerance": 1e-5, "max_rounds": 10}
     far = np.where(graph.neighbours == 8, 9, graph.neighbours).astype(np.int32)
     with pytest.raises(ValueError, match="neighbour 9 is out of range for 9 points"):
         kernels.core.grade(mesh.points, M, graph.offsets, far, **law)

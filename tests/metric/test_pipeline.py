@@ -188,8 +188,26 @@ def test_aliases_of_petsc_and_mmg_are_understood():
     assert off.a_max is None
 
 
+def test_every_default_of_petsc_means_what_it_means_there():
+    petsc = {"isotropic": False, "uniform": 0, "restrict_anisotropy_first": False}
+    petsc |= {"no_insert": 0, "no_swap": 0, "no_move": 0, "no_surf": 0, "num_iterations": 3}
+    petsc |= {"verbosity": -1, "h_min": 1e-30, "h_max": 1e30, "a_max": 1e5, "p": 1.0}
+    petsc |= {"target_complexity": 1000.0, "gradation_factor": 1.3}
+    options = MetricOptions.from_dict({"dm_plex_metric": petsc})
+    assert options == MetricOptions(
+        target_complexity=1000.0, p=1.0, h_min=1e-30, h_max=1e30, a_max=1e5, gradation_factor=1.3
+    )
+    for name in ("isotropic", "uniform", "no_insert", "no_swap", "no_move", "no_surf"):
+        with pytest.raises(ValueError, match=f"'dm_plex_metric_{name}': it has no counterpart"):
+            MetricOptions.from_dict({f"dm_plex_metric_{name}": True})
+
+
 def test_unknown_and_doubled_options_are_named():
-    with pytest.raises(ValueError, match="unknown metric option 'hsiz'; known: a_max, gradation"):
+    with pytest.raises(ValueError, match="unknown metric option 'q': known: a_max, gradation"):
+        MetricOptions.from_dict({"q": 1})
+    with pytest.raises(ValueError, match="_target_complexty': did you mean 'target_complexity'"):
+        MetricOptions.from_dict({"dm_plex_metric_target_complexty": 1})
+    with pytest.raises(ValueError, match="'hsiz': it has no counterpart here, h_min and h_max of"):
         MetricOptions.from_dict({"hsiz": 1})
     with pytest.raises(ValueError, match="unknown metric option 'dm_plex_metric_uniform'"):
         MetricOptions.from_dict({"dm_plex_metric": {"uniform": True}})

@@ -124,8 +124,8 @@ def _combined(
         restrict_anisotropy_first=options.restrict_anisotropy_first,
     )
     complexities["bounded"] = complexity(mesh, M)
-    factor = options.gradation_for(mesh.dim)
-    M = graded(mesh, M, factor=factor, model=options.gradation_model)
+    law = options.gradation_for(mesh.dim)
+    M = graded(mesh, M, factor=law.factor, model=law.model, max_distortion=law.max_distortion)
     complexities["graded"] = complexity(mesh, M)
     return M, Combined(complexities, complexities["graded"], estimate(mesh, M))
 

@@ -85,6 +85,10 @@ _METRIC: dict[str, tuple[Any, str]] = {
         "growth of sizes from edge to edge, or off, or auto (Mmg: -hgrad)",
     ),
     "gradation_model": (str, "physical, metric or mixed"),
+    "max_distortion": (
+        _number_or_off("max_distortion"),
+        "bound on ln gamma, how much the metric changes over one unit edge, or off",
+    ),
     "method": (
         str,
         "recovery of the Hessian: auto, quadratic, l2, mixed_l2, zz, clement or green; also "

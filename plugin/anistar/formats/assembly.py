@@ -12,9 +12,9 @@ import numpy as np
 from ..errors import FormatError
 from ..fields import Field, Kind
 from ..mesh import Mesh
+from ..metric.tensor_orders import from_components
 from ..validation import point_violations, volume_signs
 from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh
-from .tensor_orders import from_components
 
 _log = logging.getLogger(__name__)
 

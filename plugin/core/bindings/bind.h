@@ -12,5 +12,6 @@ void bind_locator(nanobind::module_ &module);
 void bind_nearest(nanobind::module_ &module);
 void bind_remesh(nanobind::module_ &module);
 void bind_supermesh(nanobind::module_ &module);
+void bind_vertex_graph(nanobind::module_ &module);
 
 } // namespace anistar::bindings

@@ -9,6 +9,8 @@ namespace anistar::bindings {
 namespace {
 
 GrowthModel growth_model(const std::string &name) {
+  if (name == "none")
+    return GrowthModel::None;
   if (name == "physical")
     return GrowthModel::Physical;
   if (name == "metric")
@@ -75,8 +77,8 @@ nb::tuple grade_in(const double *points, const double *metric, std::size_t n,
 
 nb::tuple grade(Array2<double> points, Array3<double> metric,
                 Array1<std::int32_t> offsets, Array1<std::int32_t> neighbours,
-                const std::string &model, double log_factor, double tolerance,
-                std::size_t max_rounds) {
+                const std::string &model, double log_factor, double max_distortion,
+                double tolerance, std::size_t max_rounds) {
   const std::size_t n = points.shape(0), d = points.shape(1);
   if ((d != 2 && d != 3) || metric.shape(0) != n || metric.shape(1) != d ||
       metric.shape(2) != d)
@@ -84,8 +86,8 @@ nb::tuple grade(Array2<double> points, Array3<double> metric,
   const std::span<const std::int32_t> starts(offsets.data(), offsets.size());
   const std::span<const std::int32_t> ends(neighbours.data(), neighbours.size());
   check_graph(starts, ends, n);
-  const GradationOptions options{growth_model(model), log_factor, tolerance,
-                                 max_rounds};
+  const GradationOptions options{growth_model(model), log_factor, max_distortion,
+                                 tolerance, max_rounds};
   return d == 2 ? grade_in<2>(points.data(), metric.data(), n, starts, ends, options)
                 : grade_in<3>(points.data(), metric.data(), n, starts, ends, options);
 }
@@ -96,7 +98,8 @@ void bind_gradation(nb::module_ &module) {
   module.def("grade", &grade, nb::arg("points").noconvert(),
              nb::arg("metric").noconvert(), nb::arg("offsets").noconvert(),
              nb::arg("neighbours").noconvert(), nb::kw_only(), nb::arg("model"),
-             nb::arg("log_factor"), nb::arg("tolerance"), nb::arg("max_rounds"),
+             nb::arg("log_factor"), nb::arg("max_distortion"), nb::arg("tolerance"),
+             nb::arg("max_rounds"),
              "Grade a metric (n, d, d) along a graph given by offsets and neighbours; "
              "returns (metric, rounds, updates, converged).");
 }

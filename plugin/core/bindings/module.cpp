@@ -9,4 +9,5 @@ NB_MODULE(_core, module) {
   anistar::bindings::bind_nearest(module);
   anistar::bindings::bind_remesh(module);
   anistar::bindings::bind_supermesh(module);
+  anistar::bindings::bind_vertex_graph(module);
 }
