@@ -30,7 +30,8 @@ class FieldHessian:
     components : ndarray (n, k, d, d)
         With their signs, in `unit` / length**2.
     absolute : ndarray (n, d, d)
-        The intersection of their absolute values, likewise.
+        The intersection of their absolute values, likewise, with the anisotropy restricted where
+        that comes first.
     unit : float
         The largest value of the field, so that no square overflows.
     scale : float
@@ -64,12 +65,12 @@ def hessians_of(
     recovered = hessians_of_fields(mesh, fields, options.recovery, graph)
     found = {}
     for name, samples in fields.items():
-        H = recovered[name].hessian
+        H = restricted = recovered[name].hessian
         if options.restrict_anisotropy_first and options.a_max is not None:
-            H = _with_anisotropy(mesh, H, options)
+            restricted = _with_anisotropy(mesh, H, options)
         found[name] = FieldHessian(
             components=H,
-            absolute=_intersected_components(H, options.intersection_rule),
+            absolute=_intersected_components(restricted, options.intersection_rule),
             unit=max(float(np.abs(samples.columns).max(initial=0.0)), np.finfo(float).tiny),
             scale=scales[name],
             remark=recovered[name].remark,

@@ -266,6 +266,18 @@ def test_anisotropy_may_be_restricted_before_the_normalisation():
     assert np.abs(first / after - 1.0)[np.abs(after) > 1.0].max() > 0.05
 
 
+def test_a_restriction_of_the_hessian_does_not_change_the_error_that_is_predicted():
+    mesh = box(20, 2)
+    u = mesh.points[:, 0] ** 2
+    options = MetricOptions(
+        target_complexity=100.0, a_max=2.0, restrict_anisotropy_first=True, gradation_factor=None
+    )
+    M, ledger = from_fields(mesh, {"u": u}, options)
+    H = np.tile(np.diag([2.0, 0.0]), (len(u), 1, 1))
+    expected = metric.predicted_error(mesh, M, H)
+    assert ledger.predicted_error["u"] == pytest.approx(expected, rel=1e-6)
+
+
 @derandomised
 @given(dims, seeds)
 def test_the_complexity_adds_up_over_parts_of_the_mesh(dim, seed):
