@@ -296,6 +296,18 @@ def test_regions_without_points_of_their_own_keep_their_integrals_where_they_can
         assert max(abs(row[0]) for row in change.defects.values()) < 1e-13
 
 
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("unit", [2.0**-200, 2.0**130])
+@pytest.mark.parametrize("method", PROJECTIONS)
+def test_the_unit_of_length_does_not_matter(dim, unit, method):
+    meshes = [jittered(dim, 2, 0), jittered(dim, 3, 1)]
+    scaled = [Mesh(points=unit * mesh.points, cells=mesh.cells) for mesh in meshes]
+    plain = transfer(meshes[0], every_kind(meshes[0], smooth), meshes[1], method=method).fields
+    other = transfer(scaled[0], every_kind(meshes[0], smooth), scaled[1], method=method).fields
+    for name, field in plain.items():
+        assert np.abs(other[name].values - field.values).max() < 1e-13
+
+
 def test_region_tags_that_only_one_mesh_has_make_it_one_region():
     source, target = two_regions(4), square(4)
     report = transfer(source, every_kind(source, smooth), target, method="conservative").report
