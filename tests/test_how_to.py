@@ -35,10 +35,11 @@ def call(command):
 
 
 def test_the_loop_around_a_command_leaves_what_the_page_says(folder):
-    loop, *_ = code_blocks(PAGE, "sh")
+    loop, page, *_ = code_blocks(PAGE, "sh")
     assert call(loop) == 0
+    assert call(page) == 0
     names = {path.name for path in Path("run").iterdir()}
-    assert {"step_003.mesh", "step_003.sol", "series.pvd", "series_003.vtu"} <= names
+    assert {"step_003.mesh", "step_003.sol", "series.pvd", "series_003.vtu", "report.html"} <= names
     report = json.loads(Path("run/report.json").read_text())
     assert [step["complexity"] for step in report["steps"]] == [None, 500, 1000, 2000]
     mesh, fields = anistar.read("run/series_003.vtu")
@@ -47,7 +48,7 @@ def test_the_loop_around_a_command_leaves_what_the_page_says(folder):
 
 
 def test_one_adaptation_by_hand_carries_the_fields_over(folder):
-    _, adapt, check = code_blocks(PAGE, "sh")
+    *_, adapt, check = code_blocks(PAGE, "sh")
     assert call(adapt.replace("10000", "300")) == 0
     mesh, fields = anistar.read("out.mesh")
     assert anistar.validate(mesh, anistar.read("in.mesh")[0]) == []

@@ -12,7 +12,14 @@ from .mesh import Mesh
 from .metric import MetricError, MetricOptions
 from .remesh import Remeshed, RemeshOptions, remesh
 from .study import Study, convergence_study
-from .transfer import TransferOptions, Transferred, transfer
+from .transfer import (
+    TransferOptions,
+    Transferred,
+    transfer,
+    transfer_operator,
+    transfer_quadrature,
+)
+from .unsteady import UnsteadyOptions, needs_adaptation, unsteady_loop
 from .validation import Violation, validate
 
 __all__ = [
@@ -36,6 +43,7 @@ __all__ = [
     "Study",
     "TransferOptions",
     "Transferred",
+    "UnsteadyOptions",
     "Violation",
     "adapt",
     "adapt_loop",
@@ -43,9 +51,13 @@ __all__ = [
     "convergence_study",
     "explain_star",
     "metric",
+    "needs_adaptation",
     "read",
     "remesh",
     "transfer",
+    "transfer_operator",
+    "transfer_quadrature",
+    "unsteady_loop",
     "validate",
     "write",
 ]

@@ -28,6 +28,7 @@ OPTIONAL = {
     "petsc4py": "petsc",
     "dolfinx": "dolfinx",
     "ngsolve": "ngsolve",
+    "mfem": "mfem",
     "mmgpy": "bench",
 }
 

@@ -1,4 +1,4 @@
-"""Fields: arrays that live on the points or the cells of a mesh."""
+"""Fields: arrays that live on the points, the cells or the nodes of the cells of a mesh."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 if TYPE_CHECKING:
     from .mesh import Mesh
 
-Location = Literal["points", "cells"]
+Location = Literal["points", "cells", "cell_nodes"]
 Kind = Literal["scalar", "vector", "tensor", "label"]
 
 _RANK = {"scalar": 1, "label": 1, "vector": 2, "tensor": 3}
@@ -20,13 +20,16 @@ _RANK = {"scalar": 1, "label": 1, "vector": 2, "tensor": 3}
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Values at the points or in the cells of a mesh.
+    """Values at the points, in the cells or at the nodes of the cells of a mesh.
 
     Parameters
     ----------
     values : (n,), (n, d) or (n, d, d) array
-        One row for each point or cell; integers make a label, booleans become integers.
-    on : {"points", "cells"}
+        One row for each point or cell; integers make a label, booleans become integers. For nodes
+        of cells ``(m, k, ...)``: k = d + 1 values at the corners of each cell (discontinuous P1),
+        or (d + 1) (d + 2) / 2 at corners and middles of edges (P2, continuous or not), in the
+        order of `anistar.transfer.node_positions`.
+    on : {"points", "cells", "cell_nodes"}
         Where the values live.
     kind : {"scalar", "vector", "tensor", "label"}, optional
         Deduced from shape and dtype when not given. A label is never interpolated.
@@ -47,16 +50,20 @@ class Field:
         values = np.asarray(self.values)
         if values.dtype.kind not in "biuf":
             raise TypeError(f"field values must be real numbers, not {values.dtype}")
-        if self.on not in ("points", "cells"):
-            raise ValueError(f"field location must be 'points' or 'cells', not {self.on!r}")
-        kind = self.kind if self.kind is not None else _deduced_kind(values)
+        if self.on not in ("points", "cells", "cell_nodes"):
+            raise ValueError(
+                f"field location must be 'points', 'cells' or 'cell_nodes', not {self.on!r}"
+            )
+        kind = self.kind if self.kind is not None else _deduced_kind(values, self.on)
         if kind not in _RANK:
             raise ValueError(f"field kind must be one of {sorted(_RANK)}, not {kind!r}")
-        if values.ndim != _RANK[kind]:
+        rank = _RANK[kind] + (self.on == "cell_nodes")
+        if values.ndim != rank:
             raise ValueError(
-                f"a {kind} field needs an array of {_RANK[kind]} dimension(s), "
-                f"not shape {values.shape}"
+                f"a {kind} field needs an array of {rank} dimension(s), not shape {values.shape}"
             )
+        if kind == "label" and self.on == "cell_nodes":
+            raise ValueError("a label lives on points or cells, not on cell_nodes")
         if kind == "label" and values.dtype.kind == "f":
             raise TypeError(f"a label field needs integers, not {values.dtype}")
         dtype = np.int64 if kind == "label" else np.float64
@@ -64,13 +71,16 @@ class Field:
         object.__setattr__(self, "kind", kind)
 
 
-def _deduced_kind(values: NDArray[Any]) -> Kind:
+def _deduced_kind(values: NDArray[Any], on: str) -> Kind:
     ranks: dict[int, Kind] = {1: "scalar", 2: "vector", 3: "tensor"}
-    if values.ndim not in ranks:
-        raise ValueError(f"field values must be (n,), (n, d) or (n, d, d), not {values.shape}")
+    at_nodes = on == "cell_nodes"
+    rank = values.ndim - at_nodes
+    if rank not in ranks:
+        form = "(m, k), (m, k, d) or (m, k, d, d)" if at_nodes else "(n,), (n, d) or (n, d, d)"
+        raise ValueError(f"field values must be {form}, not {values.shape}")
     if values.ndim == 1 and values.dtype.kind in "biu":
         return "label"
-    return ranks[values.ndim]
+    return ranks[rank]
 
 
 def as_fields(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None) -> dict[str, Field]:
@@ -108,12 +118,22 @@ def as_fields(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None) -> dic
 
 
 def _check_shape(name: str, field: Field, mesh: Mesh) -> None:
+    where = "points" if field.on == "points" else "cells"
     expected = mesh.n_points if field.on == "points" else mesh.n_cells
     if len(field.values) != expected:
         raise ValueError(
-            f"field {name!r} has {len(field.values)} values, the mesh has {expected} {field.on}"
+            f"field {name!r} has {len(field.values)} values, the mesh has {expected} {where}"
         )
-    if field.values.ndim > 1 and any(size != mesh.dim for size in field.values.shape[1:]):
+    components = field.values.shape[1:]
+    if field.on == "cell_nodes":
+        n_nodes, components = components[0], components[1:]
+        allowed = (mesh.dim + 1, (mesh.dim + 1) * (mesh.dim + 2) // 2)
+        if n_nodes not in allowed:
+            raise ValueError(
+                f"field {name!r} has {n_nodes} nodes in each cell; a {mesh.dim}D mesh takes "
+                f"{allowed[0]} (P1) or {allowed[1]} (P2)"
+            )
+    if any(size != mesh.dim for size in components):
         raise ValueError(
             f"field {name!r} of kind {field.kind} has shape {field.values.shape}, "
             f"the mesh has dimension {mesh.dim}"

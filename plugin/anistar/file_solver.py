@@ -14,7 +14,17 @@ from .formats import read_with_report, write
 from .mesh import Mesh
 
 #: Suffix of the mesh file, and that of the solution file.
-FILE_KINDS = {"mesh": (".mesh", ".sol"), "meshb": (".meshb", ".solb"), "vtu": (".vtu", ".vtu")}
+FILE_KINDS = {
+    "mesh": (".mesh", ".sol"),
+    "meshb": (".meshb", ".solb"),
+    "vtu": (".vtu", ".vtu"),
+    "msh": (".msh", ".msh"),
+    "su2": (".su2", ".vtu"),
+}
+#: Those whose mesh files carry fields as well.
+_WITH_FIELDS = ("vtu", "msh")
+#: Those whose solutions have no mesh of their own, and are read with the mesh of the same name.
+_WITHOUT_MESH = (".sol", ".solb")
 
 
 class FileSolver:
@@ -26,9 +36,13 @@ class FileSolver:
         The command with ``{mesh}`` and ``{solution}`` where the paths go. It reads the first and
         writes the second; it runs without a shell.
     folder : path
-        Where the files are left: ``step_000.mesh`` and so on.
-    kind : {"mesh", "meshb", "vtu"}
-        With `vtu` the mesh file also carries the last fields, as an initial guess.
+        Where the files are left: ``step_000.mesh``, what the command printed in
+        ``step_000.log``, and so on.
+    kind : {"mesh", "meshb", "vtu", "msh", "su2"}
+        Formats of the mesh and of the solution, see `FILE_KINDS`. With `vtu` and `msh` the mesh
+        file also carries the last fields, as an initial guess.
+    first : int
+        Number of the first solve, when others were made before.
 
     Raises
     ------
@@ -36,7 +50,9 @@ class FileSolver:
         If the command lacks a place for a path, or the kind is unknown.
     """
 
-    def __init__(self, command: str, folder: str | Path, kind: str = "mesh") -> None:
+    def __init__(
+        self, command: str, folder: str | Path, kind: str = "mesh", *, first: int = 0
+    ) -> None:
         for place in ("{mesh}", "{solution}"):
             if place not in command:
                 raise ValueError(f"the solver command must contain {place}: {command!r}")
@@ -45,7 +61,7 @@ class FileSolver:
         self.command = shlex.split(command)
         self.folder = Path(folder)
         self.kind = kind
-        self.count = 0
+        self.count = first
 
     def __call__(self, mesh: Mesh, fields: Mapping[str, Any]) -> dict[str, Field]:
         """Write the mesh, run the command, and return the fields it wrote.
@@ -59,12 +75,11 @@ class FileSolver:
         """
         mesh_file, solution_file = self._paths()
         solution_file.unlink(missing_ok=True)
-        write(mesh_file, mesh, fields if self.kind == "vtu" else None)
+        write(mesh_file, mesh, fields if self.kind in _WITH_FIELDS else None)
         self._run(mesh_file, solution_file)
         if not solution_file.is_file():
             raise RuntimeError(f"the solver wrote no {solution_file}")
-        # A medit solution has no mesh: it is read with the mesh of the same name.
-        source = solution_file if self.kind == "vtu" else mesh_file
+        source = mesh_file if solution_file.suffix in _WITHOUT_MESH else solution_file
         solved, found, report = read_with_report(source)
         if solved.n_points != mesh.n_points or solved.n_cells != mesh.n_cells:
             raise FormatError(
@@ -88,10 +103,14 @@ class FileSolver:
         words = self.command
         for place, path in places.items():
             words = [word.replace(place, path) for word in words]
+        log = mesh_file.with_suffix(".log")
         try:
-            done = subprocess.run(words, capture_output=True, text=True, check=False)
+            with log.open("wb") as output:
+                done = subprocess.run(words, stdout=output, stderr=output, check=False)
         except OSError as error:
             raise RuntimeError(f"cannot run the solver {words[0]!r}: {error.strerror}") from error
         if done.returncode != 0:
-            said = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()
-            raise RuntimeError(f"the solver ended with code {done.returncode}: {said[-1]}")
+            said = log.read_text(encoding="utf-8", errors="replace").strip() or "it said nothing"
+            raise RuntimeError(
+                f"the solver ended with code {done.returncode}: {said.splitlines()[-1]} ({log})"
+            )

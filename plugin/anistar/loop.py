@@ -18,7 +18,7 @@ from .fields import Field, as_fields
 from .interpolation_error import interpolation_error
 from .mesh import Mesh
 from .options import require
-from .report import as_builtin
+from .report import Reportable, as_builtin
 
 Fields = Mapping[str, Field | ArrayLike]
 Solve = Callable[[Mesh, dict[str, Any]], Fields]
@@ -111,9 +111,11 @@ class Step:
     fields : dict
         What `solve` returned.
     metric : (n, d, d) float64 or None
-        The metric that the mesh was made for, at its points; None for the first.
-    report : AdaptReport or None
-        How the mesh was made; None for the first.
+        The metric that the mesh was made for, at its points; None for the first, and for one
+        that was read from disk.
+    report : AdaptReport, Reportable or None
+        How the mesh was made; None for the first. Of a step that was read from disk, what was
+        written about it.
     qoi : float or None
         The quantity of interest.
     error : dict of str to float
@@ -127,7 +129,7 @@ class Step:
     mesh: Mesh
     fields: dict[str, Any]
     metric: Floats | None
-    report: AdaptReport | None
+    report: AdaptReport | Reportable | None
     qoi: float | None
     error: dict[str, float]
     seconds: float
@@ -187,6 +189,7 @@ def adapt_loop(
     geometry: Mesh | None = None,
     project: Projection | None = None,
     callback: Callable[[Step], object] | None = None,
+    finished: Sequence[Step] = (),
 ) -> Loop:
     """Solve and adapt until the options say stop.
 
@@ -205,6 +208,9 @@ def adapt_loop(
         ``project(points, facet_tag)`` moves (k, d) boundary points onto the true boundary.
     callback : callable, optional
         ``callback(step)`` is called after each solve; the loop stops when it returns True.
+    finished : sequence of Step
+        Steps of a loop that was interrupted, such as `RunFolder.load` returns: this one goes on
+        after them, and they come first in its result.
 
     Returns
     -------
@@ -218,14 +224,18 @@ def adapt_loop(
     """
     require(LoopOptions, options=options)
     geometry = geometry if geometry is not None else mesh
-    steps: list[Step] = []
-    state = _State(0, None, mesh, {}, None, None)
+    steps: list[Step] = list(finished)
     try:
-        while True:
+        while not steps or (reason := _reason_to_stop(steps, options)) is None:
+            state = (
+                _adapted(steps[-1], options, geometry, project)
+                if steps
+                else _State(0, None, mesh, {}, None, None)
+            )
             steps.append(_solved(solve, state, options))
-            if reason := _reason_to_stop(steps, options, callback):
-                return Loop(tuple(steps), reason)
-            state = _adapted(steps[-1], options, geometry, project)
+            if callback is not None and callback(steps[-1]) is True:
+                return Loop(tuple(steps), "stopped by the callback")
+        return Loop(tuple(steps), reason)
     except Exception as error:
         message = f"iteration {len(steps)}: {error}"
         done = Loop(tuple(steps), message)
@@ -268,14 +278,8 @@ def _adapted(
     return _State(step.iteration + 1, complexity, done.mesh, done.fields, done.metric, done.report)
 
 
-def _reason_to_stop(
-    steps: list[Step],
-    options: LoopOptions,
-    callback: Callable[[Step], object] | None,
-) -> str | None:
+def _reason_to_stop(steps: list[Step], options: LoopOptions) -> str | None:
     step = steps[-1]
-    if callback is not None and callback(step) is True:
-        return "stopped by the callback"
     if options.target_error is not None and max(step.error.values()) <= options.target_error:
         return f"target error {options.target_error:g} reached"
     if options.rtol is not None and len(steps) > 1:

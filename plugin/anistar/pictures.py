@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,7 @@ except ImportError as error:
 
 Floats = NDArray[np.float64]
 Box = tuple[float, float, float, float]
+Target = str | os.PathLike[str] | BinaryIO
 
 INK, PALE, ACCENT, MUTED = "#1d2733", "#9aa7b4", "#c8402f", "#4a7ba6"
 _POINTS_ON_ELLIPSE = 33
@@ -31,12 +32,12 @@ _INCHES = 11.0
 _DPI = 150
 
 
-def mesh_picture(path: str | os.PathLike[str], mesh: Mesh, *, box: Box | None = None) -> None:
+def mesh_picture(path: Target, mesh: Mesh, *, box: Box | None = None) -> None:
     """Draw the edges of a mesh, its boundary and interfaces stronger.
 
     Parameters
     ----------
-    path : path
+    path : path or binary file
         A PNG, SVG or PDF file.
     mesh : Mesh
         A 2D mesh.
@@ -50,7 +51,7 @@ def mesh_picture(path: str | os.PathLike[str], mesh: Mesh, *, box: Box | None = 
 
 
 def certificate_picture(
-    path: str | os.PathLike[str],
+    path: Target,
     mesh: Mesh,
     certificate: Certificate,
     *,
@@ -60,7 +61,7 @@ def certificate_picture(
 
     Parameters
     ----------
-    path : path
+    path : path or binary file
         A PNG, SVG or PDF file.
     mesh : Mesh
         A 2D mesh.
@@ -88,7 +89,7 @@ def certificate_picture(
 
 
 def solution_picture(
-    path: str | os.PathLike[str],
+    path: Target,
     mesh: Mesh,
     values: ArrayLike,
     *,
@@ -99,7 +100,7 @@ def solution_picture(
 
     Parameters
     ----------
-    path : path
+    path : path or binary file
         A PNG, SVG or PDF file.
     mesh : Mesh
         A 2D mesh.
@@ -116,16 +117,14 @@ def solution_picture(
     _save(figure, path)
 
 
-def metric_picture(
-    path: str | os.PathLike[str], mesh: Mesh, M: Floats, *, box: Box | None = None
-) -> None:
+def metric_picture(path: Target, mesh: Mesh, M: Floats, *, box: Box | None = None) -> None:
     """Draw the metric at the points as ellipses that neighbours nearly touch.
 
     Each ellipse is ``(x - p)^T M (x - p) = 1/4``: a unit edge joins two of them.
 
     Parameters
     ----------
-    path : path
+    path : path or binary file
         A PNG, SVG or PDF file.
     mesh : Mesh
         A 2D mesh.
@@ -141,7 +140,7 @@ def metric_picture(
 
 
 def overview_picture(
-    path: str | os.PathLike[str],
+    path: Target,
     mesh: Mesh,
     values: ArrayLike,
     metric: tuple[Mesh, Floats],
@@ -152,7 +151,7 @@ def overview_picture(
 
     Parameters
     ----------
-    path : path
+    path : path or binary file
         A PNG, SVG or PDF file.
     mesh : Mesh
         A 2D mesh.
@@ -182,7 +181,7 @@ def ellipses(points: Floats, M: Floats) -> Floats:
 
 
 def convergence_picture(
-    path: str | os.PathLike[str],
+    path: Target,
     curves: Mapping[str, Sequence[tuple[int, float]]],
     *,
     order: float,
@@ -192,7 +191,7 @@ def convergence_picture(
 
     Parameters
     ----------
-    path : path
+    path : path or binary file
         A PNG, SVG or PDF file.
     curves : mapping of str to sequence of (unknowns, error)
         One curve for each name; the last is the one that the line of known order goes along.
@@ -212,6 +211,31 @@ def convergence_picture(
     axes.set(xlabel="unknowns $N$", ylabel=label)
     axes.grid(True, which="both", color="#e4e8ec", linewidth=0.6)
     axes.legend(frameon=False)
+    _save(figure, path)
+
+
+def bars_picture(
+    path: Target, names: Sequence[str], heights: Sequence[float], *, label: str
+) -> None:
+    """Draw one bar for each name, as of a histogram.
+
+    Parameters
+    ----------
+    path : path or binary file
+        A PNG, SVG or PDF file.
+    names : sequence of str
+        Below the bars.
+    heights : sequence of float
+    label : str
+        What the names are.
+    """
+    figure = Figure(figsize=(6.4, 3.2), layout="constrained")
+    axes = figure.add_subplot()
+    axes.bar(range(len(heights)), heights, width=0.9, color=MUTED)
+    axes.set_xticks(range(len(names)), names)
+    axes.set(xlabel=label, ylabel="count")
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
     _save(figure, path)
 
 
@@ -257,5 +281,5 @@ def _draw_boundary(axes: Any, mesh: Mesh) -> None:
     axes.add_collection(LineCollection(list(mesh.points[mesh.facets]), colors=INK, linewidths=1.1))
 
 
-def _save(figure: Any, path: str | os.PathLike[str]) -> None:
+def _save(figure: Any, path: Target) -> None:
     figure.savefig(path, dpi=_DPI)

@@ -45,7 +45,7 @@ class RemeshReport:
         ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
         ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
     agreement : str
-        ``done``, ``off``, or ``skipped: `` and why.
+        ``done``, ``off``, or ``skipped:`` and why.
     consistency : dict
         Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
         ``inconsistency``, ``boundary``), ``rounds`` and ``stop_reason``.

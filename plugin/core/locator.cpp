@@ -53,34 +53,36 @@ std::array<double, 2> nearest_on(const Vector<2> &x,
   return {1 - t, t};
 }
 
-/// The same for a triangle, by the regions of the plane around it (Ericson, Real-Time
-/// Collision Detection, 2005, section 5.1.5).
+/// The same for a triangle: the foot on its plane when that lies inside, else the
+/// nearest point of the sides. In an orthogonal frame, so that thin triangles lose as
+/// few digits as their aspect ratio has.
 std::array<double, 3> nearest_on(const Vector<3> &x,
                                  const std::array<Vector<3>, 3> &triangle) {
-  const auto &[a, b, c] = triangle;
-  const Vector<3> ab = b - a, ac = c - a, ax = x - a, bx = x - b, cx = x - c;
-  const double d1 = ab.dot(ax), d2 = ac.dot(ax);
-  if (d1 <= 0 && d2 <= 0)
-    return {1, 0, 0};
-  const double d3 = ab.dot(bx), d4 = ac.dot(bx);
-  if (d3 >= 0 && d4 <= d3)
-    return {0, 1, 0};
-  const double d5 = ab.dot(cx), d6 = ac.dot(cx);
-  if (d6 >= 0 && d5 <= d6)
-    return {0, 0, 1};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0)
-    return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0)
-    return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - t, t};
+  const Vector<3> ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0],
+                  ax = x - triangle[0];
+  const double along = std::max(ab.squaredNorm(), 1e-300);
+  const double slant = ac.dot(ab) / along;
+  const Vector<3> across = ac - slant * ab;
+  const double c = ax.dot(across) / std::max(across.squaredNorm(), 1e-300);
+  const double b = ax.dot(ab) / along - c * slant;
+  if (b >= 0 && c >= 0 && b + c <= 1)
+    return {1 - b - c, b, c};
+  std::array<double, 3> best{};
+  double best_distance = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = k, j = (k + 1) % 3;
+    const Vector<3> u = triangle[j] - triangle[i];
+    const double t = std::clamp(
+        (x - triangle[i]).dot(u) / std::max(u.squaredNorm(), 1e-300), 0., 1.);
+    const double distance = (x - triangle[i] - t * u).squaredNorm();
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = {};
+      best[i] = 1 - t;
+      best[j] = t;
+    }
   }
-  const double sum = va + vb + vc;
-  return {va / sum, vb / sum, vc / sum};
+  return best;
 }
 
 template <std::size_t d> double signed_volume(const Simplex<d> &s) {

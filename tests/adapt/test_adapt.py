@@ -57,6 +57,15 @@ def test_fields_come_back_in_the_form_they_were_given():
     assert np.abs(done.fields["v"].values - done.mesh.points).max() < 1e-12
 
 
+@pytest.mark.parametrize("method", ["conservative", "bounded"])
+def test_an_adaptation_keeps_integrals_on_request(method):
+    mesh = square(8)
+    chosen = dataclasses.replace(options(), transfer=TransferOptions(method=method))
+    change = adapt(mesh, {"u": layer(mesh.points)}, chosen).report.transfer.changes["u"]
+    before, after = change.integral
+    assert after == pytest.approx(before, rel=1e-12)
+
+
 def test_only_the_chosen_fields_make_the_metric():
     mesh = square(10)
     fields = {"u": layer(mesh.points), "w": layer(1 - mesh.points)}

@@ -129,6 +129,25 @@ def test_transfer_carries_fields_to_another_mesh(folder, capsys):
     assert fields["w"].values.max() == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("method", ["conservative", "bounded"])
+def test_transfer_keeps_integrals_on_request(folder, capsys, method):
+    write("target.vtu", square(7))
+    assert run(f"transfer in.vtu target.vtu -o out.vtu --method {method} --json") == 0
+    report = report_of(capsys)
+    integral = report["changes"]["w"]["integral"]
+    assert report["method"] == method
+    assert report["coverage"]["cells"] == 0
+    assert integral["after"] == pytest.approx(integral["before"], rel=1e-12)
+    assert run(f"transfer in.vtu target.vtu -o out.vtu --method {method}") == 0
+    assert "0 cells not covered" in capsys.readouterr().out
+
+
+def test_adapt_carries_fields_as_it_is_told(folder, capsys):
+    words = "--target-complexity 100 --transfer-method bounded --outside nearest --json"
+    assert run(f"adapt in.vtu -o out.vtu {words}") == 0
+    assert report_of(capsys)["transfer"]["method"] == "bounded"
+
+
 @pytest.mark.parametrize("kind", ["mesh", "vtu"])
 def test_loop_drives_a_solver_that_is_a_command(folder, capsys, kind):
     command = f"{sys.executable} solver.py {{mesh}} {{solution}}"

@@ -1,3 +1,5 @@
+import json
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -6,6 +8,7 @@ from meshes import cube, rectangle_with_jitter, square
 
 from anistar.fields import Field
 from anistar.mesh import Mesh
+from anistar.report import to_json
 from anistar.topology import cell_volumes
 from anistar.transfer import TransferOptions, integral, transfer
 
@@ -101,6 +104,27 @@ def test_the_report_has_integrals_and_extrema_before_and_after():
     assert report.seconds > 0
 
 
+def test_the_report_of_every_method_is_json():
+    mesh = square(3)
+    fields = {"u": linear(mesh.points), "q": Field(np.ones((mesh.n_cells, 6)), "cell_nodes")}
+    options = TransferOptions(l2_difference=True)
+    told = json.loads(to_json(transfer(mesh, fields, square(4), options).report))
+    assert told["changes"]["u"]["l2_difference"] == [pytest.approx(0, abs=1e-7)]
+    assert told["changes"]["q"]["l2_difference"] is None
+    assert told["coverage"]["cells"] == 0
+    told = json.loads(to_json(transfer(mesh, {"u": fields["u"]}, square(4)).report))
+    assert told["coverage"] is None
+    assert told["changes"]["u"]["l2_difference"] is None
+    assert told["changes"]["u"]["defects"]["0"] == [pytest.approx(0, abs=1e-14)]
+
+
+def test_the_function_is_not_hidden_by_the_package_of_its_name():
+    import anistar
+    import anistar.transfer.options
+
+    assert anistar.transfer is transfer
+
+
 def test_the_integral_of_one_is_the_area():
     mesh = rectangle_with_jitter(5)
     area = cell_volumes(mesh.points, mesh.cells).sum()
@@ -145,11 +169,11 @@ class TestPointsOutside:
         assert len(transfer(self.source, {"q": q}, self.target).fields["q"].values) == 32
 
 
-@pytest.mark.parametrize("method", ["conservative", "bounded", "magic"])
-def test_a_method_that_does_not_exist_is_named_with_those_that_do(method):
+def test_a_method_that_does_not_exist_is_named_with_those_that_do():
     mesh = square(2)
-    with pytest.raises(ValueError, match=f"method '{method}' does not exist; methods: interpolate"):
-        transfer(mesh, {}, mesh, method=method)
+    names = "interpolate, conservative, bounded"
+    with pytest.raises(ValueError, match=f"method 'magic' does not exist; methods: {names}"):
+        transfer(mesh, {}, mesh, method="magic")
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,13 @@ from ..adapt import Adapted, adapt
 from ..formats import read, write, write_metric
 from . import console
 from .files import metric_target, writable
-from .options import adapt_options, add_metric_options, add_outside_option, add_remesh_options
+from .options import (
+    adapt_options,
+    add_metric_options,
+    add_outside_option,
+    add_remesh_options,
+    add_transfer_method_option,
+)
 
 SUMMARY = "adapt a mesh to the fields in its file, and carry the fields over"
 EXAMPLE = "anistar adapt in.vtu --field u --target-complexity 10000 -o out.vtu"
@@ -28,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--metric-output", metavar="FILE", help="also write the metric")
     add_metric_options(parser)
     add_remesh_options(parser)
+    add_transfer_method_option(parser)
     add_outside_option(parser, "nearest")
 
 

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
+from typing import Any
 
 from ..file_solver import FILE_KINDS, FileSolver
 from ..formats import read
 from ..loop import Loop, LoopError, LoopOptions, Step, adapt_loop
-from ..report import write_json
-from ..series import write_series
+from ..report import as_builtin
+from ..run_folder import RunFolder
 from . import console
-from .options import adapt_options, add_metric_options, add_remesh_options, numbers
+from .options import (
+    adapt_options,
+    add_metric_options,
+    add_remesh_options,
+    add_transfer_method_option,
+    numbers,
+)
 
 SUMMARY = "solve and adapt in turn, with a solver that is a command"
 EXAMPLE = (
@@ -26,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--command",
         dest="solver",
         required=True,
-        help="reads {mesh}, writes {solution} (.mesh and .sol, or as --files says)",
+        help="reads {mesh}, writes {solution} (.mesh and .sol, or as --format says)",
     )
     parser.add_argument("-o", "--output", required=True, help="folder for all files")
     parser.add_argument(
@@ -35,9 +41,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--target-error", type=float, metavar="X", help="stop at this L2 error")
     parser.add_argument("--max-iterations", type=int, default=20, metavar="N")
     parser.add_argument("--field", action="append", metavar="NAME", help="field for the metric")
-    parser.add_argument("--files", choices=tuple(FILE_KINDS), default="mesh")
+    parser.add_argument("--format", "--files", choices=tuple(FILE_KINDS), default="mesh")
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on after the steps that the folder holds, as after a crash",
+    )
     add_metric_options(parser)
     add_remesh_options(parser)
+    add_transfer_method_option(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -49,26 +61,26 @@ def run(arguments: argparse.Namespace) -> int:
         max_iterations=arguments.max_iterations,
     )
     mesh, _ = read(arguments.input)
-    folder = Path(arguments.output)
-    folder.mkdir(parents=True, exist_ok=True)
-    solve = FileSolver(arguments.solver, folder, arguments.files)
-    steps: list[Step] = []
+    folder = RunFolder(arguments.output, _settings(arguments, options))
+    finished = folder.load() if arguments.resume else []
+    first = finished[0].mesh if finished else mesh
+    solve = FileSolver(arguments.solver, folder.folder, arguments.format, first=len(finished))
     total = len(options.complexities) + 1 if options.complexities else None
     with console.progress_bar(total, is_quiet=arguments.json) as advance:
 
         def moved(step: Step) -> None:
-            steps.append(step)
+            folder.save(step)
             advance(f"{step.mesh.n_points} points")
 
         try:
-            loop = adapt_loop(solve, mesh, options, callback=moved)
+            loop = adapt_loop(solve, first, options, callback=moved, finished=finished)
         except LoopError as error:
-            _write(folder, error.loop)
+            folder.close(error.loop)
             raise
         except KeyboardInterrupt:
-            _write(folder, Loop(tuple(steps), "interrupted"))
+            folder.close(Loop(tuple(folder.steps), "interrupted"))
             raise
-    _write(folder, loop)
+    folder.close(loop)
     if arguments.json:
         console.show_json(loop)
     else:
@@ -76,9 +88,10 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _write(folder: Path, loop: Loop) -> None:
-    write_series(folder / "series.pvd", ((step.mesh, step.fields) for step in loop.steps))
-    write_json(folder / "report.json", loop)
+def _settings(arguments: argparse.Namespace, options: LoopOptions) -> dict[str, Any]:
+    """Return what every step depends on; the targets still to come may change on the way."""
+    adapt = as_builtin(options.adapt)
+    return {"command": arguments.solver, "format": arguments.format, "options": adapt}
 
 
 def _show(loop: Loop) -> None:

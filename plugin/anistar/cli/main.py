@@ -10,12 +10,14 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ..errors import MeshingError
-from . import adapt, check, convert, demo, doctor, loop, metric, remesh, study, transfer
+from . import adapt, check, convert, demo, doctor, loop, metric, remesh, report, study, transfer
 from .options import canonical_flags
 
 OK, FAILED, BAD_INPUT = 0, 1, 2
 
-COMMANDS = (adapt, metric, remesh, transfer, loop, study, check, convert, doctor, demo)
+COMMANDS = (
+    adapt, metric, remesh, transfer, loop, study, report, check, convert, doctor, demo,
+)  # fmt: skip
 
 EXIT_CODES = "exit codes: 0 done, 1 failed (or a check found problems), 2 wrong usage or input"
 

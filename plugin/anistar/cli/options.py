@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from ..adapt import AdaptOptions
 from ..aliases import MMG
 from ..metric.aliases import our_name, our_value
-from ..transfer import OUTSIDE
+from ..transfer import METHODS, OUTSIDE
 
 Number = TypeVar("Number", int, float)
 
@@ -121,11 +121,23 @@ def add_outside_option(parser: argparse.ArgumentParser, default: str) -> None:
     )
 
 
+def add_transfer_method_option(parser: argparse.ArgumentParser) -> None:
+    """Add the flag for how fields are carried to the adapted mesh."""
+    parser.add_argument(
+        "--transfer-method",
+        choices=METHODS,
+        default=METHODS[0],
+        help=f"how fields are carried over (default {METHODS[0]})",
+    )
+
+
 def adapt_options(arguments: argparse.Namespace, **extra: Any) -> AdaptOptions:
     """Return the options that were given as flags."""
-    names = (*_METRIC, *_REMESH, "outside")
-    given = {name: value for name, value in vars(arguments).items() if name in names}
-    return AdaptOptions.from_dict({**given, **extra})
+    given = vars(arguments)
+    options = {name: given[name] for name in (*_METRIC, *_REMESH) if name in given}
+    carried = {"method": given.get("transfer_method"), "outside": given.get("outside")}
+    transfer = {name: value for name, value in carried.items() if value is not None}
+    return AdaptOptions.from_dict({**options, "transfer": transfer, **extra})
 
 
 def canonical_flags(words: Sequence[str]) -> list[str]:

@@ -13,7 +13,13 @@ from ..loop import Solve
 from ..mesh import Mesh
 from ..study import convergence_study
 from . import console
-from .options import adapt_options, add_metric_options, add_remesh_options, numbers
+from .options import (
+    adapt_options,
+    add_metric_options,
+    add_remesh_options,
+    add_transfer_method_option,
+    numbers,
+)
 
 SUMMARY = "measure how the error falls on adapted meshes"
 EXAMPLE = (
@@ -35,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_metric_options(parser)
     add_remesh_options(parser)
+    add_transfer_method_option(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 
 from ..formats import read, write
-from ..transfer import TransferOptions, transfer
+from ..transfer import METHODS, TransferOptions, TransferReport, transfer
 from . import console
 from .files import writable
 from .options import add_outside_option
 
 SUMMARY = "carry the fields of one mesh to another"
-EXAMPLE = "anistar transfer old.vtu new.vtu -o out.vtu --outside nearest"
+EXAMPLE = "anistar transfer old.vtu new.vtu -o out.vtu --method conservative"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,10 +19,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("source", help="mesh with fields; in.mesh picks up in.sol")
     parser.add_argument("target", help="mesh that gets the fields")
     parser.add_argument("-o", "--output", required=True, help="target mesh with the fields")
-    parser.add_argument("--method", default="interpolate", help="interpolate (default)")
     parser.add_argument(
-        "--log-euclidean", action="store_true", help="interpolate logarithms of tensors"
+        "--method", default=METHODS[0], help=f"one of {', '.join(METHODS)} (default {METHODS[0]})"
     )
+    parser.add_argument(
+        "--threads", type=int, default=1, help="for the intersection of the meshes (default 1)"
+    )
+    parser.add_argument("--log-euclidean", action="store_true", help="carry logarithms of tensors")
     add_outside_option(parser, "raise")
 
 
@@ -33,6 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
         method=arguments.method,
         outside=arguments.outside,
         log_euclidean=arguments.log_euclidean,
+        threads=arguments.threads,
     )
     source, fields = read(arguments.source)
     target, _ = read(arguments.target)
@@ -46,8 +50,15 @@ def run(arguments: argparse.Namespace) -> int:
         for name, change in done.report.changes.items()
         for index, (before, after) in enumerate(zip(*change.integral, strict=True))
     ]
-    title = (
-        f"{done.report.points_outside} points outside, by {done.report.max_distance:.3g} at most"
-    )
-    console.show_table(title, ["field", "integral before", "integral after"], rows)
+    console.show_table(_title(done.report), ["field", "integral before", "integral after"], rows)
     return 0
+
+
+def _title(report: TransferReport) -> str:
+    coverage = report.coverage
+    if coverage is None:
+        return f"{report.points_outside} points outside, by {report.max_distance:.3g} at most"
+    return (
+        f"{coverage.cells} cells not covered, {100 * coverage.volume:.3g} % of the volume, "
+        f"by {coverage.max_distance:.3g} at most"
+    )

@@ -15,7 +15,7 @@ from ..errors import FormatError
 from ..fields import Field, as_fields
 from ..mesh import Mesh
 from ..topology import Float
-from . import gmf, gmsh, medit, meshio_guard, vtu
+from . import gmf, gmsh, medit, meshio_guard, su2, vtu
 from .assembly import ReadReport, assembled
 from .atomic import replaced
 from .export import exported
@@ -46,6 +46,7 @@ _WRITERS: dict[str, Callable[[Path, Mesh, Mapping[str, Field]], None]] = {
     ".mesh": medit.write_mesh,
     ".meshb": medit.write_mesh,
     ".msh": gmsh.write,
+    ".su2": su2.write,
     ".vtu": vtu.write,
 }
 METRIC = "metric"
@@ -110,6 +111,12 @@ def write(
     """
     path = Path(path)
     checked = as_fields(mesh, fields)
+    for name, field in checked.items():
+        if field.on == "cell_nodes":
+            raise FormatError(
+                f"cannot write {path}: field {name!r} lives at the nodes of cells, and files hold "
+                "values at points and in cells"
+            )
     if suffix_of(path) in _WRITERS:
         _WRITERS[suffix_of(path)](path, mesh, checked)
         return

@@ -25,7 +25,7 @@ from .suffixes import suffix_of
 # The integer array of tags in the files that we write; where it is present no other counts.
 TAGS = "medit:ref"
 # Integer arrays that carry tags in other files, the first one that says anything is taken.
-FOREIGN_TAGS = ("gmsh:physical", "cell_tags", "refs", "gmsh:geometrical")
+FOREIGN_TAGS = ("gmsh:physical", "cell_tags", "refs", "gmsh:geometrical", "su2:tag")
 # JSON of [dim, tag, name] as bytes, in the field data of the files that we write.
 NAMES = "anistar:names"
 _XDMF = (".xdmf", ".xmf")
@@ -63,10 +63,16 @@ def read(path: Path, file_format: str | None = None) -> RawMesh:
         raise FormatError(f"cannot read {path}: no such file")
     with guarded("read", path):
         mesh = meshio.read(path, file_format=file_format)
-        raw = RawMesh(np.asarray(mesh.points, dtype=np.float64), _blocks(mesh))
-    raw.names = _names(path, mesh)
+        raw = content_of(mesh, path)
     suffix = suffix_of(path)
     raw.six = "xdmf" if suffix in _XDMF else "vtk" if suffix in _VTK else None
+    return raw
+
+
+def content_of(mesh: meshio.Mesh, path: Path) -> RawMesh:
+    """Return what a mesh in meshio's form says; errors name the path."""
+    raw = RawMesh(np.asarray(mesh.points, dtype=np.float64), _blocks(mesh))
+    raw.names = _names(path, mesh)
     raw.point_data = {name: data for name, data in mesh.point_data.items() if not is_reserved(name)}
     if _tag_key(mesh) is None:
         _add_cell_sets(mesh, raw)

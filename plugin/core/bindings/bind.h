@@ -8,7 +8,9 @@ namespace anistar::bindings {
 void bind_certify(nanobind::module_ &module);
 void bind_gradation(nanobind::module_ &module);
 void bind_locator(nanobind::module_ &module);
+void bind_nearest(nanobind::module_ &module);
 void bind_remesh(nanobind::module_ &module);
+void bind_supermesh(nanobind::module_ &module);
 void bind_vertex_graph(nanobind::module_ &module);
 
 } // namespace anistar::bindings

@@ -5,6 +5,8 @@ NB_MODULE(_core, module) {
   anistar::bindings::bind_certify(module);
   anistar::bindings::bind_gradation(module);
   anistar::bindings::bind_locator(module);
+  anistar::bindings::bind_nearest(module);
   anistar::bindings::bind_remesh(module);
+  anistar::bindings::bind_supermesh(module);
   anistar::bindings::bind_vertex_graph(module);
 }

@@ -1,0 +1,7 @@
+"""VTK: grids to `Mesh` and back, filters for pipelines and ParaView, glyphs of metrics."""
+
+from .filters import vtkAnistarAdapt, vtkAnistarMetric
+from .glyphs import metric_glyphs
+from .grids import from_vtk, to_vtk
+
+__all__ = ["from_vtk", "metric_glyphs", "to_vtk", "vtkAnistarAdapt", "vtkAnistarMetric"]

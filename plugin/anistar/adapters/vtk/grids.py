@@ -1,0 +1,170 @@
+"""A `Mesh` with fields as a `vtkUnstructuredGrid`, and back.
+
+The arrays are those of the VTU files that `anistar.write` makes: a grid that ParaView read from one
+of them is the same as one from here.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...fields import Field, as_fields
+from ...formats.assembly import assembled
+from ...formats.export import exported
+from ...formats.meshio_guard import NAMES, TAGS, content_of
+from ...formats.raw import KIND_DIM
+from ...mesh import Mesh
+
+try:
+    from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
+    from vtkmodules.util.numpy_support import (
+        numpy_to_vtk,
+        numpy_to_vtkIdTypeArray,
+        vtk_to_numpy,
+    )
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
+except ImportError as error:
+    error.add_note("anistar's VTK adapter needs it: pip install 'anistar[vtk]'")
+    raise
+
+_KINDS = {
+    1: "vertex",
+    3: "line",
+    5: "triangle",
+    7: "polygon",
+    9: "quad",
+    10: "tetra",
+    12: "hexahedron",
+    13: "wedge",
+    14: "pyramid",
+    21: "line3",
+    22: "triangle6",
+    24: "tetra10",
+    42: "polyhedron",
+}
+_TYPES = {kind: number for number, kind in _KINDS.items()}
+
+
+def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) -> Any:
+    """Return a mesh and its fields as a `vtkUnstructuredGrid`.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        2D meshes get z = 0. Cells come first, then facets, ridges and corners as cells of lower
+        dimension; all have their tags in the cell array ``medit:ref``.
+    fields : mapping of str to Field or array, optional
+        Vectors get three components, tensors nine, row by row. Cell fields are NaN (labels 0)
+        on the cells of lower dimension.
+
+    Returns
+    -------
+    vtkUnstructuredGrid
+    """
+    content = exported(mesh, as_fields(mesh, fields))
+    grid = vtkUnstructuredGrid()
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(content.points))
+    grid.SetPoints(points)
+    sizes = [np.full(len(b.rows), KIND_DIM[b.kind] + 1, np.int64) for b in content.blocks]
+    types = [np.full(len(b.rows), _TYPES[b.kind], np.uint8) for b in content.blocks]
+    cells = vtkCellArray()
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(np.r_[0, np.cumsum(np.concatenate(sizes))], deep=True),
+        numpy_to_vtkIdTypeArray(
+            np.concatenate([b.rows.ravel().astype(np.int64) for b in content.blocks]), deep=True
+        ),
+    )
+    grid.SetCells(numpy_to_vtk(np.concatenate(types), deep=True), cells)
+    _add(grid.GetPointData(), content.point_data)
+    blocks = content.blocks
+    cell_data = {name: np.concatenate([b.data[name] for b in blocks]) for name in blocks[0].data}
+    tags = np.concatenate([np.asarray(b.tags, np.int32) for b in blocks])
+    _add(grid.GetCellData(), {TAGS: tags, **cell_data})
+    entries = [[dim, tag, name] for (dim, tag), name in sorted(content.names.items())]
+    encoded = np.frombuffer(json.dumps(entries).encode("ascii"), dtype=np.uint8)
+    _add(grid.GetFieldData(), {NAMES: encoded.copy()})
+    return grid
+
+
+def from_vtk(grid: Any) -> tuple[Mesh, dict[str, Field]]:
+    """Return the mesh and fields of a `vtkUnstructuredGrid` of triangles or tetrahedra.
+
+    Parameters
+    ----------
+    grid : vtkUnstructuredGrid
+        Triangles need z = 0. Cells of lower dimension become facets, ridges and corners; their
+        tags are looked for in ``medit:ref``, ``gmsh:physical`` and ``cell_tags``.
+
+    Returns
+    -------
+    mesh : Mesh
+    fields : dict of str to Field
+        Symmetric tensors of six components are taken in VTK's order.
+
+    Raises
+    ------
+    TypeError
+        If it is no unstructured grid.
+    FormatError
+        If it holds no valid mesh.
+    """
+    if not getattr(grid, "IsA", lambda name: False)("vtkUnstructuredGrid"):
+        kind = getattr(grid, "GetClassName", lambda: type(grid).__name__)()
+        raise TypeError(f"a vtkUnstructuredGrid is needed, not {kind}")
+    name = Path("vtkUnstructuredGrid")
+    raw = content_of(_as_meshio(grid), name)
+    raw.six = "vtk"
+    mesh, fields, _ = assembled(raw, name)
+    return mesh, fields
+
+
+def _as_meshio(grid: Any) -> meshio.Mesh:
+    n = grid.GetNumberOfPoints()
+    points = vtk_to_numpy(grid.GetPoints().GetData()) if n else np.zeros((0, 3))
+    cells: list[tuple[str, NDArray[Any]]] = []
+    members: list[NDArray[Any]] = []
+    if grid.GetNumberOfCells():
+        types = np.asarray(WrapDataObject(grid).CellTypes)
+        offsets = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
+        connectivity = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
+        for number in np.unique(types):
+            chosen = np.flatnonzero(types == number)
+            sizes = np.diff(offsets)[chosen]
+            kind = _KINDS.get(int(number), f"VTK {number}")
+            width = int(sizes[0]) if kind in KIND_DIM else 0
+            rows = connectivity[offsets[chosen][:, None] + np.arange(width)]
+            cells.append((kind, rows))
+            members.append(chosen)
+    cell_data = _arrays(grid.GetCellData())
+    return meshio.Mesh(
+        points,
+        cells,
+        point_data=_arrays(grid.GetPointData()),
+        cell_data={name: [a[chosen] for chosen in members] for name, a in cell_data.items()},
+        field_data=_arrays(grid.GetFieldData()),
+    )
+
+
+def _add(data: Any, arrays: Mapping[str, NDArray[Any]]) -> None:
+    for name, values in arrays.items():
+        array = numpy_to_vtk(np.ascontiguousarray(values))
+        array.SetName(name)
+        data.AddArray(array)
+
+
+def _arrays(data: Any) -> dict[str, NDArray[Any]]:
+    found = {}
+    for i in range(data.GetNumberOfArrays()):
+        array = data.GetArray(i)
+        if array is not None and array.GetName():  # arrays of strings are no numbers
+            found[array.GetName()] = vtk_to_numpy(array)
+    return found

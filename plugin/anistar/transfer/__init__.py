@@ -1,0 +1,31 @@
+"""Fields from one mesh to another: interpolation, projection, and projection within bounds."""
+
+from .intersection import Supermesh, supermesh
+from .location import locator
+from .measure import integral
+from .nodes import node_positions
+from .operators import transfer_operator
+from .options import METHODS, OUTSIDE, Outside, TransferOptions
+from .quadrature import transfer_quadrature
+from .report import Coverage, FieldChange, TransferReport
+from .transfer import Transferred, as_given, transfer
+
+__all__ = [
+    "METHODS",
+    "OUTSIDE",
+    "Coverage",
+    "FieldChange",
+    "Outside",
+    "Supermesh",
+    "TransferOptions",
+    "TransferReport",
+    "Transferred",
+    "as_given",
+    "integral",
+    "locator",
+    "node_positions",
+    "supermesh",
+    "transfer",
+    "transfer_operator",
+    "transfer_quadrature",
+]

@@ -1,0 +1,160 @@
+"""Target points located in the source mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..mesh import Mesh
+from ..topology import Bool, Float, Int, cell_determinants
+from .nodes import node_coordinates
+from .options import TransferOptions
+from .regions import Regions
+
+# How far, relative to the cell, the nodes of a cell are drawn to its middle to find the source
+# cell on their side of a facet: far above the round-off of a coordinate, far below a cell.
+INWARD = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Points in the source mesh.
+
+    Attributes
+    ----------
+    cells : (q,) int32
+        Source cell of each point.
+    weights : (q, d + 1) float64
+        Barycentric coordinates there, none negative.
+    inside : (q,) bool
+        In the cell itself.
+    outside : (q,) bool
+        Farther from the source than the tolerance.
+    max_distance : float
+        Largest distance from the source.
+    """
+
+    cells: Int
+    weights: Float
+    inside: Bool
+    outside: Bool
+    max_distance: float
+
+
+def locator(mesh: Mesh, cells: Int | None = None) -> Any:
+    """Return the compiled point locator of the mesh, or of some of its cells."""
+    build = _core.Locator2 if mesh.dim == 2 else _core.Locator3
+    chosen = mesh.cells if cells is None else mesh.cells[cells]
+    return build(np.ascontiguousarray(mesh.points), np.ascontiguousarray(chosen))
+
+
+def located_points(source: Mesh, target: Mesh, options: TransferOptions) -> Places:
+    """Locate the points of the target; continuous fields have one value there."""
+    cells, weights, distance = locator(source).locate(np.ascontiguousarray(target.points))
+    return _places(source, target.points, cells, weights, distance, "point", options)
+
+
+def located_nodes(
+    source: Mesh, target: Mesh, regions: Regions, count: int, options: TransferOptions
+) -> Places:
+    """Locate nodes of the target's cells, each in the region and on the side of its cell.
+
+    Parameters
+    ----------
+    source, target : Mesh
+        The two meshes.
+    regions : Regions
+        Their common regions.
+    count : int
+        Nodes of a cell; 1 for the centroid.
+    options : TransferOptions
+        What to do outside.
+    """
+    dim = target.dim
+    if count == 1:
+        centroid = np.full((1, dim + 1), 1 / (dim + 1))
+        return located_coordinates(source, target, regions, centroid, options)
+    nodes = node_coordinates(dim, count)
+    pulled = nodes + INWARD * (1 / (dim + 1) - nodes)
+    near = located_coordinates(source, target, regions, pulled, options)
+    positions = np.einsum("kj,mjd->mkd", nodes, target.points[target.cells]).reshape(-1, dim)
+    # Points beyond the boundary keep the weights of the nearest point of the source.
+    at = np.where(near.inside[:, None], barycentric(source, near.cells, positions), near.weights)
+    return replace(near, weights=_convex(at))
+
+
+def located_coordinates(
+    source: Mesh, target: Mesh, regions: Regions, coordinates: Float, options: TransferOptions
+) -> Places:
+    """Locate the points with the given (k, d + 1) barycentric coordinates in every cell."""
+    dim, count = target.dim, len(coordinates)
+    queries = np.einsum("kj,mjd->mkd", coordinates, target.points[target.cells])
+    cells = np.empty((target.n_cells, count), np.int32)
+    weights = np.empty((target.n_cells, count, dim + 1))
+    distance = np.empty((target.n_cells, count))
+    for region in range(regions.count):
+        sources = np.flatnonzero(regions.source == region).astype(np.int32)
+        targets = np.flatnonzero(regions.target == region)
+        found, at, away = locator(source, sources).locate(
+            np.ascontiguousarray(queries[targets].reshape(-1, dim))
+        )
+        cells[targets] = sources[found].reshape(-1, count)
+        weights[targets] = at.reshape(-1, count, dim + 1)
+        distance[targets] = away.reshape(-1, count)
+    return _places(
+        source,
+        queries.reshape(-1, dim),
+        cells.ravel(),
+        weights.reshape(-1, dim + 1),
+        distance.ravel(),
+        "a point of cell",
+        options,
+        count,
+    )
+
+
+def barycentric(mesh: Mesh, cells: Int, points: Float) -> Float:
+    """Return the (q, d + 1) barycentric coordinates of (q, d) points in the given cells."""
+    width = mesh.dim + 1
+    corners = mesh.points[mesh.cells[cells]]
+    index = np.arange(len(points) * width, dtype=np.int32).reshape(-1, width)
+    whole = cell_determinants(corners.reshape(-1, mesh.dim), index)
+    result = np.empty((len(points), width))
+    for k in range(width):
+        replaced = corners.copy()
+        replaced[:, k] = points
+        result[:, k] = cell_determinants(replaced.reshape(-1, mesh.dim), index) / whole
+    return result
+
+
+def _places(
+    source: Mesh,
+    queries: Float,
+    cells: Int,
+    weights: Float,
+    distance: NDArray[np.float64],
+    what: str,
+    options: TransferOptions,
+    per_cell: int = 1,
+) -> Places:
+    allowed = options.tolerance * float(np.linalg.norm(np.ptp(source.points, axis=0)))
+    outside = distance > allowed
+    if options.outside == "raise" and outside.any():
+        worst = int(np.argmax(distance))
+        where = ", ".join(f"{x:.6g}" for x in queries[worst])
+        raise ValueError(
+            f"{what} {worst // per_cell} at ({where}) lies {distance[worst]:.3g} outside the "
+            f"source mesh (allowed {allowed:.3g}); {int(outside.sum())} such: "
+            "give outside='nearest' or 'nan'"
+        )
+    return Places(cells, _convex(weights), distance == 0, outside, float(distance.max(initial=0.0)))
+
+
+def _convex(weights: Float) -> Float:
+    """Clip what round-off left negative, so that values keep within their bounds."""
+    positive = np.maximum(weights, 0.0)
+    return np.asarray(positive / positive.sum(axis=1, keepdims=True))

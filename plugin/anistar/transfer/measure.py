@@ -1,0 +1,46 @@
+"""Integrals and norms of fields."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..fields import Field
+from ..mesh import Mesh
+from ..topology import Float, Int, cell_volumes
+from .nodes import node_weights
+from .regions import sums_by_region
+
+
+def cell_integrals(mesh: Mesh, field: Field) -> Float:
+    """Return the (m, ...) integrals of a field over each cell."""
+    volumes = cell_volumes(mesh.points, mesh.cells)
+    if field.on == "cells":
+        means = field.values
+    elif field.on == "points":
+        means = field.values[mesh.cells].mean(axis=1)
+    else:
+        weights = node_weights(mesh.dim, field.values.shape[1])
+        means = np.einsum("k,mk...->m...", weights, field.values)
+    return np.asarray(volumes.reshape(-1, *[1] * (means.ndim - 1)) * means)
+
+
+def integral(mesh: Mesh, field: Field) -> Float:
+    """Return the integral of a field over the mesh, one value for each component.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh that carries the field.
+    field : Field
+        P1 at points, P0 in cells, or P1 or P2 at the nodes of each cell.
+
+    Returns
+    -------
+    (), (d,) or (d, d) float64
+    """
+    return np.asarray(cell_integrals(mesh, field).sum(axis=0))
+
+
+def integral_by_region(mesh: Mesh, field: Field, regions: Int, count: int) -> Float:
+    """Return the (count, ...) integrals of a field over each region."""
+    return sums_by_region(cell_integrals(mesh, field), regions, count)

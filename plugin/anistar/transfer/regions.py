@@ -1,0 +1,56 @@
+"""Regions that two meshes have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..mesh import Mesh
+from ..topology import Float, Int
+
+
+@dataclass(frozen=True, eq=False)
+class Regions:
+    """The regions of two meshes by number.
+
+    Attributes
+    ----------
+    source, target : (m,) int32
+        Number of the region of each cell.
+    tags : tuple of int
+        Tag of each region; empty where the meshes do not have the same tags, and are taken as
+        one region each.
+    """
+
+    source: Int
+    target: Int
+    tags: tuple[int, ...]
+
+    @property
+    def count(self) -> int:
+        """Number of regions, at least one."""
+        return max(1, len(self.tags))
+
+
+def common_regions(source: Mesh, target: Mesh) -> Regions:
+    """Return the regions of two meshes, matched by tag when both have the same tags."""
+    tags, numbers = np.unique(source.cell_tags, return_inverse=True)
+    other_tags, other_numbers = np.unique(target.cell_tags, return_inverse=True)
+    if not np.array_equal(tags, other_tags):
+        return Regions(np.zeros(source.n_cells, np.int32), np.zeros(target.n_cells, np.int32), ())
+    return Regions(
+        numbers.ravel().astype(np.int32),
+        other_numbers.ravel().astype(np.int32),
+        tuple(int(tag) for tag in tags),
+    )
+
+
+def sums_by_region(values: Float, regions: Int, count: int) -> Float:
+    """Return the (count, ...) sums of the (m, ...) rows of each region."""
+    columns = values.reshape(len(values), -1)
+    sums = [
+        np.bincount(regions, weights=np.ascontiguousarray(column), minlength=count)
+        for column in columns.T
+    ]
+    return np.stack(sums, axis=1).reshape(count, *values.shape[1:])

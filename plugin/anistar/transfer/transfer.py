@@ -1,0 +1,229 @@
+"""Carry fields from one mesh to another."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.sparse import csr_array
+
+from ..fields import Field, as_fields
+from ..mesh import Mesh
+from ..options import require
+from .bounded import bounded
+from .columns import as_columns, from_columns, power_of_two
+from .coverage import require_covered
+from .difference import l2_difference
+from .interpolation import Interpolator
+from .intersection import Supermesh, supermesh
+from .labels import majority
+from .measure import integral, integral_by_region
+from .options import Outside, TransferOptions
+from .projection import Projector
+from .regions import Regions, common_regions
+from .report import FieldChange, TransferReport
+
+
+@dataclass(frozen=True, eq=False)
+class Transferred:
+    """Fields on the target mesh, in the form they were given, and the report."""
+
+    fields: dict[str, Any]
+    report: TransferReport
+
+
+@dataclass(frozen=True, eq=False)
+class _Carried:
+    fields: dict[str, Field]
+    points_outside: int
+    max_distance: float
+    overlap: Supermesh | None
+
+
+def transfer(
+    source: Mesh,
+    fields: Mapping[str, Field | ArrayLike],
+    target: Mesh,
+    options: TransferOptions | None = None,
+    *,
+    method: str | None = None,
+    outside: Outside | None = None,
+) -> Transferred:
+    """Carry fields from the source mesh to the target mesh.
+
+    ``interpolate`` evaluates fields at the target's points, centroids or nodes. ``conservative``
+    is the L2 projection through the exact intersection of the two meshes, with the integral over
+    each region kept to round-off where both meshes cover the same region. ``bounded`` keeps
+    within the extrema of the source cells around each value, and the integrals as far as that
+    allows. Labels are never averaged: the one with the largest weight wins.
+
+    Values in cells and at nodes of cells may jump between regions; they are carried from each
+    region to that of the same tag where both meshes have the same region tags.
+
+    Parameters
+    ----------
+    source, target : Mesh
+        Two meshes of the same dimension.
+    fields : mapping of str to Field or array
+        Fields on the source mesh; a bare array means points.
+    options : TransferOptions, optional
+        All options at once.
+    method, outside : str, optional
+        The two options most used, given by name; they replace those of `options`.
+
+    Returns
+    -------
+    Transferred
+        Fields in the form they were given (bare array or `Field`), and the report.
+
+    Raises
+    ------
+    ValueError
+        If a part of the target lies outside and ``outside="raise"``, if an option is unknown, if
+        a field does not fit the source mesh, or if the method cannot carry it.
+    """
+    started = time.perf_counter()
+    if source.dim != target.dim:
+        raise ValueError(f"cannot transfer from a {source.dim}D mesh to a {target.dim}D mesh")
+    options = _merged(options, method, outside)
+    checked = as_fields(source, fields)
+    done = (
+        _interpolated(source, checked, target, options)
+        if options.method == "interpolate"
+        else _projected(source, checked, target, options)
+    )
+    overlap = done.overlap
+    if overlap is None and options.wants_l2_difference:
+        overlap = _intersected(source, checked, target, options)
+    report = TransferReport(
+        method=options.method,
+        outside=options.outside,
+        points_outside=done.points_outside,
+        max_distance=done.max_distance,
+        coverage=overlap.coverage() if overlap is not None else None,
+        changes={
+            name: _change(source, field, target, done.fields[name], overlap, options)
+            for name, field in checked.items()
+            if field.kind != "label"
+        },
+        seconds=time.perf_counter() - started,
+    )
+    return Transferred(as_given(fields, done.fields), report)
+
+
+def as_given(fields: Mapping[str, Any], carried: Mapping[str, Field]) -> dict[str, Any]:
+    """Return the carried fields in the form of the given ones: `Field`, or a bare array."""
+    return {
+        name: field if isinstance(fields[name], Field) else field.values
+        for name, field in carried.items()
+    }
+
+
+def _merged(
+    options: TransferOptions | None, method: str | None, outside: Outside | None
+) -> TransferOptions:
+    given = options if options is not None else TransferOptions()
+    require(TransferOptions, options=given)
+    return replace(
+        given,
+        method=given.method if method is None else method,
+        outside=given.outside if outside is None else outside,
+    )
+
+
+def _interpolated(
+    source: Mesh, fields: Mapping[str, Field], target: Mesh, options: TransferOptions
+) -> _Carried:
+    through = Interpolator(source, target, options)
+    carried = {name: through.carried(name, field) for name, field in fields.items()}
+    return _Carried(carried, through.points_outside, through.max_distance, None)
+
+
+def _projected(
+    source: Mesh, fields: Mapping[str, Field], target: Mesh, options: TransferOptions
+) -> _Carried:
+    for name, field in fields.items():
+        _require_projectable(name, field, source, options)
+    overlap = _intersected(source, fields, target, options)
+    require_covered(overlap, options)
+    projector = Projector(overlap)
+    carried = {name: _project(projector, field, options) for name, field in fields.items()}
+    return _Carried(carried, 0, float(overlap.distance.max()), overlap)
+
+
+def _intersected(
+    source: Mesh, fields: Mapping[str, Field], target: Mesh, options: TransferOptions
+) -> Supermesh:
+    places = {field.on for field in fields.values()}
+    return supermesh(
+        source,
+        target,
+        points="points" in places,
+        blocks="cell_nodes" in places,
+        threads=options.threads,
+    )
+
+
+def _require_projectable(name: str, field: Field, source: Mesh, options: TransferOptions) -> None:
+    if field.on == "cell_nodes" and field.values.shape[1] != source.dim + 1:
+        raise ValueError(
+            f"field {name!r} is quadratic: the {options.method} method carries linear and "
+            "constant fields; give method='interpolate'"
+        )
+    if field.kind != "label" and not np.isfinite(field.values).all():
+        row = int(np.argmax(~np.isfinite(field.values).reshape(len(field.values), -1).all(axis=1)))
+        raise ValueError(
+            f"field {name!r} is not finite at {field.on}[{row}]: an integral would not be either"
+        )
+
+
+def _project(projector: Projector, field: Field, options: TransferOptions) -> Field:
+    if field.kind == "label":
+        return replace(field, values=majority(csr_array(projector.mixed(field.on)), field.values))
+    columns = as_columns(field, logarithmic=options.log_euclidean)
+    project = bounded if options.method == "bounded" else Projector.projected
+    scale = power_of_two(columns)
+    carried = scale * project(projector, columns / scale, field.on)
+    return from_columns(carried, field, logarithmic=options.log_euclidean)
+
+
+def _change(
+    source: Mesh,
+    before: Field,
+    target: Mesh,
+    after: Field,
+    overlap: Supermesh | None,
+    options: TransferOptions,
+) -> FieldChange:
+    pairs = ((source, before), (target, after))
+    axes = (0, 1) if before.on == "cell_nodes" else (0,)
+    return FieldChange(
+        integral=_pair(*(integral(mesh, field) for mesh, field in pairs)),
+        minimum=_pair(*(field.values.min(axis=axes) for _, field in pairs)),
+        maximum=_pair(*(field.values.max(axis=axes) for _, field in pairs)),
+        defects=_defects(source, before, target, after, common_regions(source, target)),
+        l2_difference=(
+            l2_difference(overlap, before, after)
+            if overlap is not None and options.wants_l2_difference
+            else None
+        ),
+    )
+
+
+def _pair(before: Any, after: Any) -> tuple[list[float], list[float]]:
+    return np.ravel(before).tolist(), np.ravel(after).tolist()
+
+
+def _defects(
+    source: Mesh, before: Field, target: Mesh, after: Field, regions: Regions
+) -> dict[int, list[float]]:
+    if not regions.tags:
+        return {}
+    held = integral_by_region(source, before, regions.source, regions.count)
+    kept = integral_by_region(target, after, regions.target, regions.count)
+    lost = (kept - held).reshape(regions.count, -1)
+    return {tag: row.tolist() for tag, row in zip(regions.tags, lost, strict=True)}

@@ -1,0 +1,206 @@
+"""VTK grids to Mesh and back, filters in a pipeline, the ParaView plugin, glyphs."""
+
+import runpy
+import sys
+import types
+from pathlib import Path
+
+import numpy as np
+import pytest
+from meshes import cube, slit, square, two_region_cube, two_regions
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
+
+import anistar
+from anistar.adapters import vtk
+
+PLUGIN = Path(vtk.__file__).with_name("paraview_plugin.py")
+
+
+def fields_of(mesh):
+    draw = np.random.default_rng(0).normal
+    root = draw(size=(mesh.n_points, mesh.dim, mesh.dim))
+    return {
+        "u": draw(size=mesh.n_points),
+        "v": draw(size=(mesh.n_points, mesh.dim)),
+        "m": root + root.transpose(0, 2, 1),
+        "p": anistar.Field(draw(size=mesh.n_cells), on="cells"),
+        "id": anistar.Field(np.arange(mesh.n_cells), on="cells"),
+    }
+
+
+def assert_same_mesh(one, other):
+    for name, array in one.arrays().items():
+        assert np.array_equal(array, other.arrays()[name]) if name != "names" else True, name
+    assert one.names == other.names
+
+
+def assert_same_fields(given, found):
+    assert found.keys() == given.keys()
+    for name, field in given.items():
+        expected = field.values if isinstance(field, anistar.Field) else field
+        assert np.array_equal(found[name].values, expected), name
+
+
+@pytest.mark.parametrize("make", [two_regions, slit, cube, two_region_cube])
+def test_meshes_with_tags_names_and_fields_go_to_vtk_and_back(make):
+    mesh = make()
+    fields = fields_of(mesh)
+    again, found = vtk.from_vtk(vtk.to_vtk(mesh, fields))
+    assert_same_mesh(mesh, again)
+    assert_same_fields(fields, found)
+
+
+@pytest.mark.parametrize("make", [two_regions, two_region_cube])
+def test_a_grid_from_a_file_of_ours_is_the_same(make, tmp_path):
+    mesh = make()
+    anistar.write(tmp_path / "a.vtu", mesh, fields_of(mesh))
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(tmp_path / "a.vtu"))
+    reader.Update()
+    again, found = vtk.from_vtk(reader.GetOutput())
+    assert_same_mesh(mesh, again)
+    assert_same_fields(fields_of(mesh), found)
+
+
+def test_anistar_reads_what_vtk_writes(tmp_path):
+    mesh = two_regions()
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(str(tmp_path / "b.vtu"))
+    writer.SetInputData(vtk.to_vtk(mesh, {"u": mesh.points[:, 0]}))
+    writer.SetDataModeToAscii()
+    writer.Write()
+    again, found = anistar.read(tmp_path / "b.vtu")
+    assert_same_mesh(mesh, again)
+    assert np.allclose(found["u"].values, mesh.points[:, 0])
+
+
+def test_the_grid_keeps_its_numbers_when_python_forgets_them():
+    grid = vtk.to_vtk(square(100), {"u": np.arange(101.0**2)})
+    _ = [np.zeros((101**2, 3)) for _ in range(50)]
+    assert np.array_equal(vtk_to_numpy(grid.GetPointData().GetArray("u")), np.arange(101.0**2))
+
+
+def test_other_data_is_refused_by_its_type():
+    with pytest.raises(TypeError, match="vtkUnstructuredGrid is needed, not vtkPolyData"):
+        vtk.from_vtk(vtkPolyData())
+    with pytest.raises(anistar.FormatError, match="no triangles and no tetrahedra"):
+        vtk.from_vtk(vtkUnstructuredGrid())
+
+
+def front(mesh):
+    return {"u": np.tanh(20 * (mesh.points.sum(axis=1) - 1.1)), "other": mesh.points[:, 0]}
+
+
+def test_the_metric_filter_adds_the_metric_that_from_fields_makes():
+    mesh = square(10)
+    filter_ = vtk.vtkAnistarMetric()
+    filter_.SetInputDataObject(vtk.to_vtk(mesh, front(mesh)))
+    filter_.set_fields("u")
+    filter_.set_options(target_complexity=500.0, gradation_factor=1.4)
+    filter_.Update()
+    _, found = vtk.from_vtk(filter_.GetOutputDataObject(0))
+    expected, _ = anistar.metric.from_fields(
+        mesh,
+        {"u": front(mesh)["u"]},
+        anistar.MetricOptions(target_complexity=500.0, gradation_factor=1.4),
+    )
+    assert np.allclose(found["metric"].values, expected)
+
+
+def test_a_pipeline_of_both_filters_remeshes_and_carries_fields():
+    mesh = two_regions(10)
+    metric = vtk.vtkAnistarMetric()
+    metric.SetInputDataObject(vtk.to_vtk(mesh, front(mesh)))
+    metric.set_fields("u")
+    adapt = vtk.vtkAnistarAdapt()
+    adapt.SetInputConnection(metric.GetOutputPort())
+    adapt.Update()
+    new, found = vtk.from_vtk(adapt.GetOutputDataObject(0))
+    assert anistar.validate(new) == []
+    assert new.names == mesh.names
+    assert 800 < new.n_points < 1800
+    assert np.allclose(found["other"].values, new.points[:, 0])
+
+
+def test_the_adapt_filter_makes_the_metric_itself_where_there_is_none():
+    mesh = square(10)
+    adapt = vtk.vtkAnistarAdapt()
+    adapt.SetInputDataObject(vtk.to_vtk(mesh, front(mesh)))
+    adapt.set_fields("u")
+    adapt.set_options(target_complexity=300.0)
+    adapt.Update()
+    first, _ = vtk.from_vtk(adapt.GetOutputDataObject(0))
+    adapt.set_options(target_complexity=900.0)
+    adapt.Update()
+    second, _ = vtk.from_vtk(adapt.GetOutputDataObject(0))
+    assert anistar.validate(second) == []
+    assert 2 < second.n_points / first.n_points < 4
+
+
+def test_a_filter_that_fails_says_why_and_has_no_output(capfd):
+    mesh = square(4)
+    adapt = vtk.vtkAnistarAdapt()
+    adapt.SetInputDataObject(vtk.to_vtk(mesh, front(mesh)))
+    adapt.set_fields("missing")
+    adapt.Update()
+    assert "missing" in adapt.error
+    assert adapt.GetOutputDataObject(0).GetNumberOfCells() == 0
+    assert "unknown field 'missing'" in capfd.readouterr().err
+
+
+def test_unknown_options_are_refused_and_change_nothing():
+    adapt = vtk.vtkAnistarAdapt()
+    with pytest.raises(ValueError, match="unknown option 'complexity'"):
+        adapt.set_options(complexity=3)
+    with pytest.raises(ValueError, match="p must"):
+        adapt.set_options(p=0.5)
+    adapt.set_options(p=4.0)
+
+
+def passing(*_, **__):
+    return lambda decorated: decorated
+
+
+def test_the_paraview_plugin_offers_both_filters(monkeypatch):
+    """ParaView's decorators only describe; here they do nothing."""
+    names = ("smproxy", "smproperty", "smdomain", "smhint")
+    module = types.ModuleType("paraview.util.vtkAlgorithm")
+    kinds = ("filter", "input", "datatype", "xml", "doublevector", "stringvector")
+    for name in names:
+        setattr(module, name, types.SimpleNamespace(**dict.fromkeys(kinds, passing)))
+    for name in ("paraview", "paraview.util"):
+        monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
+    monkeypatch.setitem(sys.modules, "paraview.util.vtkAlgorithm", module)
+    plugin = runpy.run_path(str(PLUGIN))
+    mesh = square(10)
+    adapt = plugin["AnistarAdapt"]()
+    adapt.SetInputDataObject(vtk.to_vtk(mesh, front(mesh)))
+    adapt.SetTargetComplexity(200.0)
+    adapt.SetLargestSize(0.2)
+    adapt.SetSmallestSize(0.0)
+    adapt.SetLargestAnisotropy(10.0)
+    adapt.SetGradationFactor(1.5)
+    adapt.SetNorm(2.0)
+    adapt.SetPointArrays("u")
+    adapt.Update()
+    new, _ = vtk.from_vtk(adapt.GetOutputDataObject(0))
+    assert anistar.validate(new) == []
+    assert new.n_points != mesh.n_points
+
+
+@pytest.mark.parametrize("make", [square, cube])
+def test_glyphs_are_the_unit_balls_of_the_metric(make):
+    mesh = make(3)
+    root = np.random.default_rng(1).normal(size=(mesh.n_points, mesh.dim, mesh.dim))
+    metric = np.eye(mesh.dim) + root @ root.transpose(0, 2, 1)
+    chosen = np.array([0, 3, 5])
+    glyphs = vtk.metric_glyphs(mesh, metric, at=chosen, scale=0.25)
+    points = vtk_to_numpy(glyphs.GetPoints().GetData())[:, : mesh.dim]
+    off = points.reshape(len(chosen), -1, mesh.dim) - mesh.points[chosen, None]
+    length = np.sqrt(np.einsum("nbi,nij,nbj->nb", off, metric[chosen], off))
+    assert np.allclose(length, 0.25, rtol=1e-5)
+    assert glyphs.GetNumberOfCells() % len(chosen) == 0
+    with pytest.raises(ValueError, match="scale must be positive, got 0"):
+        vtk.metric_glyphs(mesh, metric, scale=0)

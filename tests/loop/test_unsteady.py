@@ -1,0 +1,122 @@
+"""Meshes follow a solution in time; they are kept while they fit."""
+
+import numpy as np
+import pytest
+from meshes import square
+
+import anistar
+from anistar.series import SeriesWriter
+from anistar.unsteady import UnsteadyOptions, needs_adaptation, unsteady_loop
+
+ADAPT = anistar.AdaptOptions.from_dict({"target_complexity": 200})
+TIMES = np.linspace(0.0, 0.4, 9)
+
+
+def wave(points, time):
+    return np.tanh(20 * (points[:, 0] - 0.3 - time))
+
+
+def moving(mesh, fields, begin, end):
+    """A solver that knows the solution."""
+    return {"u": wave(mesh.points, end)}
+
+
+def standing(mesh, fields, begin, end):
+    return dict(fields)
+
+
+def first(mesh):
+    return {"u": wave(mesh.points, 0.0)}
+
+
+def front_size(mesh, at):
+    """Mean width across the front of the cells at it."""
+    corners = mesh.points[mesh.cells]
+    near = np.abs(corners[..., 0].mean(axis=1) - at) < 0.03
+    return np.ptp(corners[near, :, 0], axis=1).mean()
+
+
+def test_the_mesh_of_each_window_is_fine_wherever_the_front_is_in_it():
+    shown = []
+    unsteady_loop(
+        moving,
+        square(10),
+        first,
+        TIMES,
+        UnsteadyOptions(adapt=ADAPT, window=4, passes=2),
+        callback=shown.append,
+    )
+    assert [instant.time for instant in shown] == pytest.approx(list(TIMES))
+    for instant in shown:
+        assert anistar.validate(instant.mesh) == []
+        assert front_size(instant.mesh, 0.3 + instant.time) < 0.05
+    meshes = [shown[0].mesh, *[instant.mesh for instant in shown[1:]]]
+    assert len({id(mesh) for mesh in meshes}) == 2
+    assert meshes[4] is meshes[1]
+
+
+def test_a_solution_that_stands_still_keeps_its_mesh():
+    done = unsteady_loop(
+        standing, square(10), first, TIMES, UnsteadyOptions(adapt=ADAPT, window=2, passes=2)
+    )
+    # The first meshes are too coarse to see what they should be; then nothing changes.
+    assert done.windows[0].adaptations == 2
+    assert [window.adaptations for window in done.windows[2:]] == [0, 0]
+    assert done.windows[3].transfer is None
+
+
+def test_fields_come_across_once_for_each_new_mesh():
+    done = unsteady_loop(
+        moving, square(10), first, TIMES, UnsteadyOptions(adapt=ADAPT, window=4, passes=1)
+    )
+    assert done.windows[0].transfer is None  # the first is evaluated, not transferred
+    assert done.windows[1].transfer["points_outside"] == 0
+    assert done.as_dict()["windows"][1]["begin"] == pytest.approx(0.2)
+
+
+def test_initial_values_on_the_first_mesh_only_are_transferred():
+    mesh = square(10)
+    done = unsteady_loop(
+        standing, mesh, first(mesh), [0.0, 1.0], UnsteadyOptions(adapt=ADAPT, passes=1)
+    )
+    assert done.windows[0].transfer is not None
+    assert anistar.validate(done.last.mesh, mesh) == []
+
+
+def test_a_new_mesh_does_not_need_adaptation_and_a_foreign_metric_does():
+    mesh = square(8)
+    metric = np.tile(np.diag([900.0, 100.0]), (mesh.n_points, 1, 1))
+    assert needs_adaptation(mesh, metric)
+    done = anistar.remesh(mesh, metric)
+    assert anistar.validate(done.mesh) == []
+    assert not needs_adaptation(done.mesh, done.metric)
+    assert not needs_adaptation(done.mesh, 1.3 * done.metric)
+    assert needs_adaptation(done.mesh, 6 * done.metric)
+    assert needs_adaptation(done.mesh, done.metric, longest_edge=1.0)
+
+
+def test_errors_name_the_window_and_what_was_wrong():
+    def fails(mesh, fields, begin, end):
+        if end > 0.2:
+            raise FloatingPointError("diverged")
+        return first(mesh)
+
+    with pytest.raises(anistar.MeshingError, match=r"window 1, from time 0\.2: diverged"):
+        unsteady_loop(fails, square(6), first, TIMES, UnsteadyOptions(adapt=ADAPT, window=4))
+    with pytest.raises(ValueError, match=r"times must ascend: 1 at 1 is followed by 0\.5"):
+        unsteady_loop(standing, square(6), first, [0.0, 1.0, 0.5])
+    with pytest.raises(ValueError, match="at least two, got 1"):
+        unsteady_loop(standing, square(6), first, [0.0])
+    with pytest.raises(ValueError, match="window must be at least 1, got 0"):
+        UnsteadyOptions(window=0)
+
+
+def test_a_series_has_the_times_and_the_changing_meshes(tmp_path):
+    writer = SeriesWriter(tmp_path / "s.pvd")
+    for time, n in ((0.0, 2), (0.25, 3)):
+        writer.add(time, square(n), {"t": np.full((n + 1) ** 2, time)})
+    text = (tmp_path / "s.pvd").read_text()
+    assert 'timestep="0.25" file="s_001.vtu"' in text
+    mesh, fields = anistar.read(tmp_path / "s_001.vtu")
+    assert mesh.n_points == 16
+    assert fields["t"].values.tolist() == [0.25] * 16
