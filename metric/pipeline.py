@@ -137,7 +137,7 @@ def _finishing(mesh: MeshLike, options: MetricOptions) -> _Finishing:
         h_min=low,
         h_max=high,
         a_max=ratio,
-        law=options.gradation_for(d),
+        law=options.growth_law(d),
     )
 
 
