@@ -11,9 +11,9 @@ const double unit_excess = std::log(longest_unit) - .03;
 
 } // namespace
 
-bool StarScore::keeps(const StarScore &before) const {
-  return quality >= std::min(quality_floor, before.quality) &&
-         shortest >= std::min(shortest_kept, before.shortest) &&
+bool StarScore::keeps(const StarScore &before, double part) const {
+  return quality >= std::min(quality_floor, part * before.quality) &&
+         shortest >= std::min(shortest_kept, part * before.shortest) &&
          longest <= std::max(longest_kept, before.longest);
 }
 

@@ -23,9 +23,13 @@ struct StarScore {
   double excess =
       0; ///< sum over its edges of how far |ln length| is beyond a unit edge
 
-  /// No worse than the bounds of a relocation, or than it was.
-  [[nodiscard]] bool keeps(const StarScore &before) const;
+  /// No worse than the bounds of a relocation, or than this part of what it was.
+  [[nodiscard]] bool keeps(const StarScore &before, double part = 1) const;
 };
+
+/// Where two walls leave room for flat cells only, every slide on a curve makes one of
+/// them a little flatter: sliding vertices keep this part.
+inline constexpr double part_kept_on_curve = .7;
 
 /// A vertex with where its metric was found.
 struct Place {
