@@ -35,14 +35,20 @@ StarScore Relocation::score() const {
   StarScore out;
   out.disagreeing = count_disagreeing();
   const Vertex<2> &v = mesh_.vertex(v_);
-  for (HalfFacet h : star_) {
-    const auto [a, b] = mesh_.facet(h);
-    out.quality = std::min(out.quality, quality(v, mesh_.vertex(a), mesh_.vertex(b)));
-    const double l = edge_length(v, mesh_.vertex(a));
+  const auto add_edge_to = [&](const Vertex<2> &u) {
+    const double l = edge_length(v, u);
     out.shortest = std::min(out.shortest, l);
     out.longest = std::max(out.longest, l);
     out.excess += std::max(0., std::abs(std::log(l)) - unit_excess);
+  };
+  for (HalfFacet h : star_) {
+    const auto [a, b] = mesh_.facet(h);
+    out.quality = std::min(out.quality, quality(v, mesh_.vertex(a), mesh_.vertex(b)));
+    add_edge_to(mesh_.vertex(a));
   }
+  const Index last = mesh_.facet(star_.back())[1];
+  if (last != mesh_.facet(star_.front())[0]) // on the boundary the star is open
+    add_edge_to(mesh_.vertex(last));
   return out;
 }
 
