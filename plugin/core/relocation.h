@@ -20,6 +20,7 @@ struct StarScore {
   int disagreeing = 0; ///< edges of the star and of its link
   double quality = 1;
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  double longest_at_end = 0; ///< in the metric of one end of an edge
   double excess =
       0; ///< sum over its edges of how far |ln length| is beyond a unit edge
 
