@@ -31,9 +31,12 @@ bool ProtectingBall::gather(Index v) {
   legs_.clear();
   for (Index e : entries_[static_cast<std::size_t>(ball)]) {
     const CurveEdge &edge = w_.on_curves.curve_edges[static_cast<std::size_t>(e)];
-    const bool ends =
-        w_.mesh.feature[static_cast<std::size_t>(edge.v0)] != Triangulation<2>::corner;
-    shell_.push_back(ends ? edge.v0 : edge.v1);
+    const auto stays = [&](Index u) {
+      return w_.mesh.feature[static_cast<std::size_t>(u)] == Triangulation<2>::corner;
+    };
+    if (stays(edge.v0) && stays(edge.v1))
+      return false;
+    shell_.push_back(stays(edge.v0) ? edge.v1 : edge.v0);
     relocation.gather(shell_.back());
     const SlidingVertex other(w_, relocation.star(), shell_.back());
     if (!other.is_on_curve())

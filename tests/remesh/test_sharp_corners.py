@@ -202,3 +202,29 @@ def test_stars_agree_between_the_legs_of_corners_where_the_metric_turns():
         certified += certificate.star_ok.sum()
     assert n > 8000
     assert certified / n >= 0.9995
+
+
+def test_a_leg_of_one_edge_keeps_the_corner_at_its_end():
+    # the corner at the end of such a leg lies on the shell, and slid with it
+    points = [
+        [0.857143, -0.052284],
+        [0.904762, -0.114190],
+        [0.952381, -0.089952],
+        [0.904762, -0.048933],
+        [0.952381, -0.024695],
+        [1.0, 0.067402],
+    ]
+    facets = [[0, 1], [1, 2], [4, 3], [5, 4], [3, 0], [2, 3], [2, 5]]
+    mesh = Mesh(
+        points=points,
+        cells=[[0, 1, 3], [1, 2, 3], [2, 4, 3], [2, 5, 4]],
+        facets=facets,
+        facet_tags=[2, 3, 1, 2, 8, 8, 0],
+    )
+    entries = np.array(
+        [[111, 117, 398], [76, 42, 454], [68, 31, 413], [91, 90, 387], [82, 78, 351], [96, 96, 250]]
+    )
+    M = entries[:, [0, 1, 1, 2]].reshape(-1, 2, 2)
+    done = anistar.remesh(mesh, M, RemeshOptions(agreement=True))
+    assert anistar.validate(done.mesh, mesh) == []
+    assert points[3] in done.mesh.points.tolist()
