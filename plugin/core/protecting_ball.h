@@ -4,6 +4,8 @@
 #include "moves.h"
 #include "relocation.h"
 
+#include <optional>
+
 namespace anistar {
 
 /// Changes the radius of a ball: the vertices of its shell slide along their legs at
