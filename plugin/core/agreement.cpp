@@ -1,7 +1,6 @@
 #include "agreement.h"
 
-#include "moves.h"
-#include "relocation.h"
+#include "protecting_ball.h"
 
 #include <utility>
 
@@ -15,8 +14,9 @@ constexpr double first_radius = .12, last_radius = .3;
 constexpr int flip_cap = 20;
 
 /// The walk on the plateau: only while this fraction of the edges disagrees, because it
-/// would ruin the mesh on hopeless metrics.
+/// would ruin the mesh on hopeless metrics, or this number, for small meshes.
 constexpr double plateau_fraction = .002;
+constexpr int always_few = 10;
 constexpr int max_plateau_rounds = 60;
 constexpr int n_plateau_candidates = 6;
 constexpr double plateau_radius = .2;
@@ -53,7 +53,7 @@ class Agreement {
 public:
   Agreement(Workspace &w, Legaliser &legaliser, Monitor &monitor, std::uint64_t seed)
       : w_(w), mesh_(w.mesh), legaliser_(legaliser), monitor_(monitor), seed_(seed),
-        relocation_(w), work_(mesh_.vertices.size()) {}
+        relocation_(w), ball_(w), work_(mesh_.vertices.size()) {}
 
   AgreementCounts run() {
     counts_.edges_before = scan();
@@ -81,6 +81,7 @@ private:
   std::uint64_t seed_;
   AgreementCounts counts_;
   Relocation relocation_;
+  ProtectingBall ball_;
   Worklist work_;
   std::vector<Index> changed_;
 
@@ -119,7 +120,7 @@ private:
       return false;
     CounterRandom random(seed_, static_cast<std::uint64_t>(v),
                          static_cast<std::uint64_t>(pass));
-    return feature == 1 ? relocate_on_curve(v, random)
+    return feature == 1 ? relocate_on_curve(v, random, 1)
                         : relocate_freely(v, radius, random);
   }
 
@@ -166,10 +167,11 @@ private:
     return {place, found};
   }
 
-  bool relocate_on_curve(Index v, CounterRandom &random) {
+  /// @param least_drop of the number of disagreeing edges
+  bool relocate_on_curve(Index v, CounterRandom &random, int least_drop) {
     const SlidingVertex on(w_, relocation_.star(), v);
     if (!on.can_slide())
-      return false;
+      return resize_ball(v, random, least_drop);
     const Place from = relocation_.here();
     const StarScore before = relocation_.score();
     for (int k = 0; k < n_candidates; ++k) {
@@ -179,11 +181,33 @@ private:
           !may_move(mesh_, from.vertex.x, on.at(dt), relocation_.star()))
         continue;
       const auto [place, found] = try_at(on.at(dt), from);
-      if (!found.keeps(before) || found.disagreeing >= before.disagreeing)
+      if (!found.keeps(before, part_kept_on_curve) ||
+          found.disagreeing > before.disagreeing - least_drop)
         continue;
       relocation_.put(place);
       on.commit(dt);
       settle(v);
+      return true;
+    }
+    return false;
+  }
+
+  /// Moves all vertices of the shell that v is on.
+  bool resize_ball(Index v, CounterRandom &random, int least_drop) {
+    if (!ball_.gather(v))
+      return false;
+    for (int k = 0; k < n_candidates; ++k) {
+      const double factor = 1 + 2 * last_radius * (random.uniform() - .5);
+      if (!ball_.resize(factor))
+        continue;
+      ++counts_.trials;
+      if (!ball_.drops(least_drop)) {
+        ball_.undo();
+        continue;
+      }
+      ball_.commit();
+      for (Index u : ball_.shell())
+        settle(u);
       return true;
     }
     return false;
@@ -205,7 +229,8 @@ private:
   void walk_on_plateau() {
     // four vertices are listed for an edge
     const double few =
-        4 * plateau_fraction * 1.5 * static_cast<double>(mesh_.n_cells());
+        4 * std::max(static_cast<double>(always_few),
+                     plateau_fraction * 1.5 * static_cast<double>(mesh_.n_cells()));
     for (int round = 0; round < max_plateau_rounds; ++round) {
       if (work_.size() == 0 || static_cast<double>(work_.size()) > few)
         return;
@@ -232,13 +257,18 @@ private:
   }
 
   void wander(Index v, int round) {
-    if (mesh_.feature[static_cast<std::size_t>(v)] != Triangulation<2>::interior)
+    const Index feature = mesh_.feature[static_cast<std::size_t>(v)];
+    if (feature == Triangulation<2>::corner)
       return;
     relocation_.gather(v);
-    const Place from = relocation_.here();
-    const StarScore before = relocation_.score();
     CounterRandom random(~seed_, static_cast<std::uint64_t>(v),
                          static_cast<std::uint64_t>(round));
+    if (feature == 1) {
+      (void)relocate_on_curve(v, random, 0);
+      return;
+    }
+    const Place from = relocation_.here();
+    const StarScore before = relocation_.score();
     const EllipseSampler ellipse(from.vertex.M);
     for (int k = 0; k < n_plateau_candidates; ++k) {
       const Vector<2> x = from.vertex.x + ellipse.step(plateau_radius, random);

@@ -129,7 +129,7 @@ Index split_edge(Workspace &w, HalfFacet edge) {
   if (is_constrained) {
     whole = w.curve_edge(edge);
     const Curve &curve = w.curve(whole);
-    if (curve.is_frozen)
+    if (curve.is_frozen || whole.ball != none)
       return none;
     t = middle(curve, whole.t0, whole.t1);
     x = curve.at(t);
@@ -182,6 +182,8 @@ bool bound_collapse(Workspace &w, Collapse &collapse) {
       return false;
     const CurveEdge in = w.curve_edge(at.into), out = w.curve_edge(at.out_of);
     if (collapse.target != in.v0 && collapse.target != out.v1)
+      return false;
+    if (in.ball != none || out.ball != none)
       return false;
     if (in.v0 == out.v1 || w.curve(in).is_frozen ||
         relative_sagitta(w.curve(in), in.t0, out.t1) > w.hausdorff)

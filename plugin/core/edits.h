@@ -47,7 +47,8 @@ struct Walk {
                                    Index background_cell);
 
 /// Splits an edge in its middle: on the curve if it is constrained. @returns the new
-/// vertex, none when the edge is frozen or the curve cannot be followed validly.
+/// vertex, none when the edge is frozen or protected, or the curve cannot be followed
+/// validly.
 [[nodiscard]] Index split_edge(Workspace &w, HalfFacet edge);
 
 /// The removal of a vertex into its neighbour, and what that means for its curve.

@@ -175,6 +175,9 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   Outline outline =
       make_outline(geometry, background, settings.hausdorff_number, monitor);
 
+  out.counts["protected_corners"] = static_cast<double>(outline.n_balls);
+  out.counts["unprotected_corners"] = static_cast<double>(outline.n_unprotected);
+
   watch.phase("size");
   MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));
   Workspace w{on_curves, geometry, background, settings.hausdorff_number};
