@@ -78,7 +78,8 @@ private:
 void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
            std::map<std::string, double> &counts) {
   const auto control = [&](double shortest, double longest) {
-    const LengthCounts done = control_lengths(w, legaliser, monitor, shortest, longest);
+    const LengthCounts done =
+        control_lengths(w, legaliser, monitor, shortest, longest, threads);
     counts["splits"] += static_cast<double>(done.splits);
     counts["collapses"] += static_cast<double>(done.collapses);
   };
@@ -87,11 +88,13 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
       smooth(w, legaliser, monitor, Target::unit_edges, threads);
     for (int k = 0; k < round.odt_sweeps; ++k)
       smooth(w, legaliser, monitor, Target::odt, threads);
-    if (round.longest > 0)
+    if (round.longest > 0) {
       control(round.shortest, round.longest);
+      renumber(w); // the new vertices into the blocks where they lie
+    }
   }
   control(shortest_outlier, longest_outlier);
-  counts["poor"] = static_cast<double>(repair(w, monitor, repair_floor));
+  counts["poor"] = static_cast<double>(repair(w, monitor, repair_floor, threads));
 }
 
 /// Phases 4 and 5, as far as the metric and the settings let them.
