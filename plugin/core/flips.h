@@ -24,6 +24,9 @@ public:
   void push(HalfFacet edge) { stack_.push_back(edge); }
   /// All edges of the star of v and of its link.
   void push_star(Index v);
+  /// Of these only the edges whose two cells have no vertex after v: the last one of
+  /// the four to be visited in a sweep pushes an edge, once.
+  void push_finished(Index v, std::span<const HalfFacet> star);
 
   /// Flips until the stack is empty or `cap` flips were made. The cells that changed
   /// are appended to `changed` when given.

@@ -16,7 +16,7 @@ struct Round {
   int pliant_sweeps, odt_sweeps;
   double shortest, longest; ///< lengths to control after the sweeps; 0: none
 };
-constexpr Round schedule[] = {{3, 0, .68, 1.45}, {3, 0, .70, 1.42}, {2, 2, 0, 0}};
+constexpr Round schedule[] = {{3, 0, .68, 1.45}, {3, 0, .70, 1.42}, {3, 2, 0, 0}};
 
 /// Outliers of the last sweeps: edges beyond these, cells below this quality.
 constexpr double shortest_outlier = .5, longest_outlier = 1.55;

@@ -38,10 +38,12 @@ public:
     const double length = std::sqrt(quadratic<2>(vertex.M, step));
     if (length > longest_move)
       step *= longest_move / length;
-    if (feature == 1 ? slide(v) : move(v, step)) {
+    const bool moved = feature == 1 ? slide(v) : move(v, step);
+    if (moved && (range.is_unbounded() || target_ == Target::odt))
       legaliser_.push_star(v);
-      legaliser_.run(flip_cap);
-    }
+    else
+      legaliser_.push_finished(v, star_);
+    legaliser_.run(flip_cap);
     return true;
   }
 
