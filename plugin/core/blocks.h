@@ -18,14 +18,17 @@
 
 namespace anistar {
 
-/// Vertices first <= v < last; by default all.
+/// Vertices first <= v < last, by default all, and new ones in a range of their own.
 struct VertexRange {
   Index first = 0, last = std::numeric_limits<Index>::max();
+  Index first_new = 0, last_new = 0;
 
   [[nodiscard]] bool is_unbounded() const {
     return last == std::numeric_limits<Index>::max();
   }
-  [[nodiscard]] bool contains(Index v) const { return first <= v && v < last; }
+  [[nodiscard]] bool contains(Index v) const {
+    return (first <= v && v < last) || (first_new <= v && v < last_new);
+  }
   [[nodiscard]] bool contains(const Cell<2> &cell) const {
     return contains(cell[0]) && contains(cell[1]) && contains(cell[2]);
   }

@@ -43,7 +43,8 @@ template <std::size_t d> std::uint64_t hilbert_key(std::array<std::uint32_t, d> 
 } // namespace
 
 template <std::size_t d>
-std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points) {
+std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points,
+                                        double shift) {
   Vector<d> low = Vector<d>::Zero(), high = Vector<d>::Zero();
   if (!points.empty())
     low = high = points.front();
@@ -51,7 +52,9 @@ std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  const double extent = std::max((high - low).maxCoeff(), 1e-300);
+  const double inner = std::max((high - low).maxCoeff(), 1e-300);
+  const double extent = (1 + 3 * shift) * inner;
+  low.array() -= shift * inner;
   const double cells = static_cast<double>((1u << bits<d>)-1);
   std::vector<std::pair<std::uint64_t, std::int32_t>> keyed(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -68,7 +71,7 @@ std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points) {
   return order;
 }
 
-template std::vector<std::int32_t> hilbert_order<2>(std::span<const Vector<2>>);
-template std::vector<std::int32_t> hilbert_order<3>(std::span<const Vector<3>>);
+template std::vector<std::int32_t> hilbert_order<2>(std::span<const Vector<2>>, double);
+template std::vector<std::int32_t> hilbert_order<3>(std::span<const Vector<3>>, double);
 
 } // namespace anistar

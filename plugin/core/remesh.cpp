@@ -182,7 +182,7 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));
   Workspace w{on_curves, geometry, background, settings.hausdorff_number};
   Legaliser legaliser(w.mesh);
-  const RefineCounts refined = refine(w, legaliser, monitor);
+  const RefineCounts refined = refine(w, legaliser, monitor, settings.threads);
 
   watch.phase("shape");
   renumber(w);

@@ -65,7 +65,8 @@ std::vector<Index> cells_by_first_vertex(const Triangulation<d> &mesh) {
 
 } // namespace
 
-template <std::size_t d> std::vector<Index> sort_along_curve(Triangulation<d> &mesh) {
+template <std::size_t d>
+std::vector<Index> sort_along_curve(Triangulation<d> &mesh, double shift) {
   std::vector<Index> used;
   std::vector<Vector<d>> points;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
@@ -73,7 +74,7 @@ template <std::size_t d> std::vector<Index> sort_along_curve(Triangulation<d> &m
       used.push_back(static_cast<Index>(v));
       points.push_back(mesh.vertices[v].x);
     }
-  std::vector<Index> order = hilbert_order<d>(points);
+  std::vector<Index> order = hilbert_order<d>(points, shift);
   for (Index &k : order)
     k = used[static_cast<std::size_t>(k)];
   const std::vector<Index> rank = inverse(order, mesh.vertices.size());
@@ -103,7 +104,7 @@ template <std::size_t d> std::vector<Index> sort_along_curve(Triangulation<d> &m
   return rank;
 }
 
-template std::vector<Index> sort_along_curve<2>(Triangulation<2> &);
-template std::vector<Index> sort_along_curve<3>(Triangulation<3> &);
+template std::vector<Index> sort_along_curve<2>(Triangulation<2> &, double);
+template std::vector<Index> sort_along_curve<3>(Triangulation<3> &, double);
 
 } // namespace anistar
