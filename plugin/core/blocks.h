@@ -39,25 +39,27 @@ struct VertexRange {
 class Blocks {
 public:
   explicit Blocks(std::size_t n_vertices)
-      : n_(n_vertices), n_blocks_(std::max<std::size_t>(
-                            1, n_ / std::clamp(n_ / fewest, smallest, largest))) {}
+      : n_(n_vertices),
+        size_(std::max<std::size_t>(1, std::clamp(n_ / fewest, smallest, largest))) {}
 
-  [[nodiscard]] std::size_t size() const { return n_blocks_; }
+  [[nodiscard]] std::size_t size() const {
+    return std::max<std::size_t>(1, n_ / size_);
+  }
   [[nodiscard]] VertexRange operator[](std::size_t k) const {
     return {begin(k), begin(k + 1)};
   }
   /// The block of vertex v.
   [[nodiscard]] std::size_t of(Index v) const {
-    auto k = static_cast<std::size_t>(v) * n_blocks_ / n_;
+    const std::size_t k = static_cast<std::size_t>(v) * size() / n_;
     return v < begin(k + 1) ? k : k + 1;
   }
 
 private:
   static constexpr std::size_t fewest = 8, smallest = 1024, largest = 8192;
-  std::size_t n_, n_blocks_;
+  std::size_t n_, size_;
 
   [[nodiscard]] Index begin(std::size_t k) const {
-    return static_cast<Index>(n_ * k / n_blocks_);
+    return static_cast<Index>(n_ * k / size());
   }
 };
 

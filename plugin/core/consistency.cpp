@@ -350,7 +350,8 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                      (failing < many_failing && counts.rounds % rounds_between_moves ==
                                                     rounds_between_moves - 1));
     if (moving)
-      (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds));
+      (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds),
+                  threads);
     renumber(w);
     check = check_stars(w, monitor, seed + 1 + std::uint64_t(counts.rounds), threads,
                         moving);

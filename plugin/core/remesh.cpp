@@ -119,7 +119,8 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
       !is_pure && (settings.agreement == AgreementMode::on ||
                    (settings.agreement == AgreementMode::when_possible && can_agree));
   if (agreeing) {
-    const AgreementCounts agreed = agree(w, legaliser, monitor, settings.seed);
+    const AgreementCounts agreed =
+        agree(w, legaliser, monitor, settings.seed, settings.threads);
     renumber(w);
     out.counts["disagreeing_before"] = static_cast<double>(agreed.edges_before);
     out.counts["disagreeing_after"] = static_cast<double>(agreed.edges_after);
