@@ -352,7 +352,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
     if (moving)
       (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds),
                   threads);
-    renumber(w);
+    renumber(w, threads);
     check = check_stars(w, monitor, seed + 1 + std::uint64_t(counts.rounds), threads,
                         moving);
   }

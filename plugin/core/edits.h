@@ -70,6 +70,6 @@ struct Collapse {
 void fill_collapse(Workspace &w, Collapse &collapse);
 
 /// Sorts the mesh along a Hilbert curve and tells the curve edges.
-void renumber(Workspace &w, double shift = 0);
+void renumber(Workspace &w, int threads, double shift = 0);
 
 } // namespace anistar

@@ -15,7 +15,7 @@ namespace anistar {
 /// @param shift 0 for their bounding cube; else the cube is larger, by that fraction of
 /// its extent below and twice that above, so that the curve turns elsewhere
 template <std::size_t d>
-[[nodiscard]] std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points,
-                                                      double shift = 0);
+[[nodiscard]] std::vector<std::int32_t>
+hilbert_order(std::span<const Vector<d>> points, int threads = 1, double shift = 0);
 
 } // namespace anistar

@@ -35,7 +35,7 @@ template <class Body> void on_threads(std::size_t n, Body body) {
 /// Calls body(begin, end) on disjoint ranges that cover 0..n, one to a thread.
 template <class Body> void parallel_ranges(std::size_t n, int threads, Body body) {
   const auto n_threads = static_cast<std::size_t>(std::max(1, threads));
-  if (n_threads == 1 || n < 2 * n_threads) {
+  if (n_threads == 1 || n < n_threads) {
     body(std::size_t{0}, n);
     return;
   }
@@ -79,6 +79,28 @@ template <class Item, class Visit>
   for (const std::vector<Item> &part : parts)
     found.insert(found.end(), part.begin(), part.end());
   return found;
+}
+
+/// Sorts values no two of which are equal.
+template <class Value> void parallel_sort(std::vector<Value> &values, int threads) {
+  const std::size_t n = values.size();
+  std::size_t n_parts = 1;
+  while (n_parts < static_cast<std::size_t>(threads) && n / n_parts > (1 << 14))
+    n_parts *= 2;
+  const auto at = [&](std::size_t part) {
+    return values.begin() + static_cast<std::ptrdiff_t>(n * part / n_parts);
+  };
+  parallel_ranges(n_parts, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      std::sort(at(k), at(k + 1));
+  });
+  for (std::size_t width = 1; width < n_parts; width *= 2)
+    parallel_items(n_parts / (2 * width), threads, [&] {
+      return [&](std::size_t pair) {
+        const std::size_t k = 2 * width * pair;
+        std::inplace_merge(at(k), at(k + width), at(k + 2 * width));
+      };
+    });
 }
 
 } // namespace anistar

@@ -373,12 +373,12 @@ RefineCounts refine(Workspace &w, Legaliser &legaliser, Monitor &monitor, int th
     double radius = refinement.level();
     bool going = true;
     for (int stage = 0, last = 0; going && last < 2; ++stage) {
-      renumber(w, stage % 2 == 0 ? .25 : 0);
+      renumber(w, threads, stage % 2 == 0 ? .25 : 0);
       radius = std::max(largest_radius, .5 * radius);
       last += radius == largest_radius;
       going = refine_blocks(w, legaliser, monitor, radius, threads, counts);
     }
-    renumber(w);
+    renumber(w, threads);
     refinement.clear();
     refinement.push(0, w.mesh.cells.size());
   }

@@ -90,7 +90,7 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
       smooth(w, legaliser, monitor, Target::odt, threads);
     if (round.longest > 0) {
       control(round.shortest, round.longest);
-      renumber(w); // the new vertices into the blocks where they lie
+      renumber(w, threads); // the new vertices into the blocks where they lie
     }
   }
   control(shortest_outlier, longest_outlier);
@@ -102,7 +102,8 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                    const RemeshSettings &settings, Stopwatch &watch,
                    RemeshResult &out) {
   watch.phase("agreement");
-  out.distortion = distortion_quantiles(w.mesh.vertices, w.mesh.cells);
+  out.distortion =
+      distortion_quantiles(w.mesh.vertices, w.mesh.cells, settings.threads);
   const bool can_agree = out.distortion.p99 <= largest_agreeing_distortion;
   const bool is_pure = settings.consistency == ConsistencyMode::pure;
   if (settings.agreement == AgreementMode::off &&
@@ -121,7 +122,7 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
   if (agreeing) {
     const AgreementCounts agreed =
         agree(w, legaliser, monitor, settings.seed, settings.threads);
-    renumber(w);
+    renumber(w, settings.threads);
     out.counts["disagreeing_before"] = static_cast<double>(agreed.edges_before);
     out.counts["disagreeing_after"] = static_cast<double>(agreed.edges_after);
     out.counts["trials"] = static_cast<double>(agreed.trials);
@@ -186,16 +187,17 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   const RefineCounts refined = refine(w, legaliser, monitor, settings.threads);
 
   watch.phase("shape");
-  renumber(w);
+  renumber(w, settings.threads);
   if (settings.consistency != ConsistencyMode::pure)
     shape(w, legaliser, monitor, settings.threads, out.counts);
-  renumber(w);
+  renumber(w, settings.threads);
 
   certify_stars(w, legaliser, monitor, settings, watch, out);
 
   watch.phase("report");
+  out.statistics =
+      measure(w.mesh.vertices, w.mesh.cells, w.mesh.neighbours, settings.threads);
   extract(w, out);
-  out.statistics = measure(out.vertices, out.cells);
   watch.stop();
   out.counts["inserted"] = static_cast<double>(refined.inserted);
   out.counts["boundary_splits"] = static_cast<double>(refined.boundary_splits);

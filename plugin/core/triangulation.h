@@ -149,6 +149,7 @@ void star_of(const Triangulation<2> &mesh, Index v, std::vector<HalfFacet> &star
 /// is no longer used. @returns the new index of every old vertex, `none` if dropped.
 /// @param shift see hilbert_order
 template <std::size_t d>
-std::vector<Index> sort_along_curve(Triangulation<d> &mesh, double shift = 0);
+std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads = 1,
+                                    double shift = 0);
 
 } // namespace anistar
