@@ -26,7 +26,7 @@ constexpr int flip_cap = 200;
 constexpr std::size_t n_buckets = 64;
 /// Blocks are refined side by side when there are so many vertices that are not on
 /// curves, and the target is still far.
-constexpr std::size_t vertices_for_blocks = 4096;
+constexpr std::size_t vertices_for_blocks = 2048;
 /// A level has room for that many new vertices per vertex: four are expected.
 constexpr double most_growth = 8;
 
