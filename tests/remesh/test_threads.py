@@ -80,17 +80,6 @@ def test_an_exception_in_the_callback_ends_all_threads(phase):
         remesh(mesh, M, RemeshOptions(threads=3, agreement=True, callback=stop))
 
 
-def test_the_report_after_mending_is_what_the_certificate_finds():
-    mesh, M = layer()
-    first = remesh(mesh, M).mesh
-    done = remesh(first, arc_metric(first, 9000), RemeshOptions(agreement=True), geometry=mesh)
-    found = anistar.certify(done.mesh, done.metric)
-    assert done.report.counts["star_moves"] > 0
-    assert done.report.star_ok == found.star_ok.mean()
-    assert done.report.simplex_ok == found.simplex_ok.mean()
-    assert anistar.validate(done.mesh, mesh) == []
-
-
 def test_blocks_leave_no_trace_in_the_lengths_along_their_borders():
     mesh, M = graded_layer()
     done = remesh(mesh, M, RemeshOptions(agreement=False, threads=2))
