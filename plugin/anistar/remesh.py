@@ -56,7 +56,7 @@ class RemeshOptions:
     seed : int
         Of the random moves in the agreement phase.
     threads : int
-        For the certificate; the result does not depend on it.
+        That work on the mesh side by side; the result does not depend on it, to the last bit.
     hausdorff_number : float
         Distance of a curve from an edge along it, relative to the edge's length; longer edges
         are split whatever the metric says.

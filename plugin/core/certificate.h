@@ -42,6 +42,8 @@ public:
 
   /// Bit k: the cell is Delaunay in the metric of its vertex k.
   [[nodiscard]] std::uint8_t bits(Index cell);
+  /// How many cells away the last answer of bits() looked.
+  [[nodiscard]] std::uint8_t reach() const { return reach_; }
 
 private:
   CertifiedMesh<2> mesh_;
@@ -52,13 +54,19 @@ private:
   /// vertices.
   struct Front {
     HalfFacet entry;
+    std::uint8_t depth; ///< in cells
     Power first, second;
   };
   std::vector<Front> front_;
+  std::uint8_t reach_ = 0;
 };
 
-/// Bit k of result[c]: cell c is Delaunay in the metric of its vertex k.
-[[nodiscard]] std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<2> mesh,
-                                                      int threads);
+/// Bit k of bits[c]: cell c is Delaunay in the metric of its vertex k. The answer
+/// looked reach[c] cells away, 255 for that or more: it holds as long as these do not
+/// change.
+struct DelaunayBits {
+  std::vector<std::uint8_t> bits, reach;
+};
+[[nodiscard]] DelaunayBits delaunay_bits(CertifiedMesh<2> mesh, int threads);
 
 } // namespace anistar

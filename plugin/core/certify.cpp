@@ -26,7 +26,8 @@ public:
 
   CertificateResult run() {
     CertificateResult out;
-    out.delaunay = delaunay_bits({vertices_, cells_, neighbours_, walls_}, threads_);
+    out.delaunay =
+        delaunay_bits({vertices_, cells_, neighbours_, walls_}, threads_).bits;
     out.star_ok = stars(out.delaunay);
     out.simplex_ok.resize(cells_.size());
     for (std::size_t c = 0; c < cells_.size(); ++c)
@@ -148,8 +149,8 @@ private:
     };
     if (!has_interface)
       return count(star_ok);
-    return count(
-        stars(delaunay_bits({vertices_, cells_, neighbours_, boundary}, threads_)));
+    return count(stars(
+        delaunay_bits({vertices_, cells_, neighbours_, boundary}, threads_).bits));
   }
 
   void count_restricted(CertificateResult &out) const {

@@ -350,8 +350,9 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                      (failing < many_failing && counts.rounds % rounds_between_moves ==
                                                     rounds_between_moves - 1));
     if (moving)
-      (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds));
-    renumber(w);
+      (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds),
+                  threads);
+    renumber(w, threads);
     check = check_stars(w, monitor, seed + 1 + std::uint64_t(counts.rounds), threads,
                         moving);
   }

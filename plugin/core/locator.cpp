@@ -95,11 +95,12 @@ template <std::size_t d> double signed_volume(const Simplex<d> &s) {
 } // namespace
 
 template <std::size_t d>
-Locator<d>::Locator(std::span<const Vector<d>> points, std::span<const Cell<d>> cells)
+Locator<d>::Locator(std::span<const Vector<d>> points, std::span<const Cell<d>> cells,
+                    int threads)
     : points_(points.begin(), points.end()), cells_(cells.begin(), cells.end()),
       neighbours_(adjacency<d>(cells, points.size())),
       boundary_(boundary_facets<d>(neighbours_)),
-      cell_tree_(cell_boxes<d>(points, cells)),
+      cell_tree_(cell_boxes<d>(points, cells), threads),
       boundary_tree_(facet_boxes<d>(points, cells, boundary_)) {}
 
 template <std::size_t d> Simplex<d> Locator<d>::simplex(Index cell) const {

@@ -1,48 +1,96 @@
 #include "statistics.h"
 
+#include "parallel.h"
+
 namespace anistar {
 
-Statistics measure(std::span<const Vertex<2>> vertices,
-                   std::span<const Cell<2>> cells) {
-  Statistics out;
-  const std::span bins(Statistics::length_bins);
-  out.length_histogram.assign(bins.size() + 1, 0);
-  out.quality_histogram.assign(Statistics::n_quality_bins, 0);
+namespace {
+
+/// Sums over some of the cells.
+struct Sums {
+  double length = 0, quality = 0;
+  double length_min = std::numeric_limits<double>::infinity(), length_max = 0;
+  double quality_min = std::numeric_limits<double>::infinity();
+  std::size_t n_edges = 0, n_unit = 0;
+  std::array<std::size_t, std::size(Statistics::length_bins) + 1> lengths{};
+  std::array<std::size_t, Statistics::n_quality_bins> qualities{};
+
+  void add_cell(double q) {
+    quality += q;
+    quality_min = std::min(quality_min, q);
+    const double bin = std::clamp(q, 0., 1.) * Statistics::n_quality_bins;
+    ++qualities[std::min(Statistics::n_quality_bins - 1,
+                         static_cast<std::size_t>(bin))];
+  }
+  void add_edge(double l) {
+    const std::span bins(Statistics::length_bins);
+    ++n_edges;
+    length += l;
+    length_min = std::min(length_min, l);
+    length_max = std::max(length_max, l);
+    n_unit += l >= shortest_unit && l <= longest_unit;
+    ++lengths[static_cast<std::size_t>(std::upper_bound(bins.begin(), bins.end(), l) -
+                                       bins.begin())];
+  }
+  Sums &operator+=(const Sums &other) {
+    length += other.length;
+    quality += other.quality;
+    length_min = std::min(length_min, other.length_min);
+    length_max = std::max(length_max, other.length_max);
+    quality_min = std::min(quality_min, other.quality_min);
+    n_edges += other.n_edges;
+    n_unit += other.n_unit;
+    for (std::size_t k = 0; k < lengths.size(); ++k)
+      lengths[k] += other.lengths[k];
+    for (std::size_t k = 0; k < qualities.size(); ++k)
+      qualities[k] += other.qualities[k];
+    return *this;
+  }
+};
+
+} // namespace
+
+Statistics measure(std::span<const Vertex<2>> vertices, std::span<const Cell<2>> cells,
+                   std::span<const Neighbours<2>> neighbours, int threads) {
   const auto vertex = [&](Index v) -> const Vertex<2> & {
     return vertices[static_cast<std::size_t>(v)];
   };
-  const auto neighbours = adjacency<2>(cells, vertices.size());
-  double length_sum = 0, quality_sum = 0;
-  std::size_t unit = 0;
-  out.length_min = out.quality_min = std::numeric_limits<double>::infinity();
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    const Cell<2> &cell = cells[c];
-    const double q = quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2]));
-    quality_sum += q;
-    out.quality_min = std::min(out.quality_min, q);
-    const double bin = std::clamp(q, 0., 1.) * Statistics::n_quality_bins;
-    ++out.quality_histogram[std::min(Statistics::n_quality_bins - 1,
-                                     static_cast<std::size_t>(bin))];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const HalfFacet other = neighbours[c][i];
-      if (other.exists() && static_cast<std::size_t>(other.cell()) < c)
-        continue; // counted from the other side
-      const auto [a, b] = facet_of<2>(cell, i);
-      const double l = edge_length(vertex(a), vertex(b));
-      ++out.n_edges;
-      length_sum += l;
-      out.length_min = std::min(out.length_min, l);
-      out.length_max = std::max(out.length_max, l);
-      unit += l >= shortest_unit && l <= longest_unit;
-      ++out.length_histogram[static_cast<std::size_t>(
-          std::upper_bound(bins.begin(), bins.end(), l) - bins.begin())];
-    }
-  }
-  const double n_edges = static_cast<double>(std::max<std::size_t>(out.n_edges, 1));
-  out.unit_fraction = static_cast<double>(unit) / n_edges;
-  out.length_mean = length_sum / n_edges;
+  // parts of a fixed size, so that the sums do not depend on the number of threads
+  constexpr std::size_t grain = 1 << 14;
+  std::vector<Sums> parts((cells.size() + grain - 1) / grain);
+  parallel_items(parts.size(), threads, [&] {
+    return [&](std::size_t part) {
+      Sums sums;
+      for (std::size_t c = part * grain; c < std::min(cells.size(), (part + 1) * grain);
+           ++c) {
+        const Cell<2> &cell = cells[c];
+        sums.add_cell(quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2])));
+        for (std::size_t i = 0; i < 3; ++i) {
+          const HalfFacet other = neighbours[c][i];
+          if (other.exists() && static_cast<std::size_t>(other.cell()) < c)
+            continue; // counted from the other side
+          const auto [a, b] = facet_of<2>(cell, i);
+          sums.add_edge(edge_length(vertex(a), vertex(b)));
+        }
+      }
+      parts[part] = sums;
+    };
+  });
+  Sums all;
+  for (const Sums &part : parts)
+    all += part;
+  Statistics out;
+  out.n_edges = all.n_edges;
+  const double n_edges = static_cast<double>(std::max<std::size_t>(all.n_edges, 1));
+  out.unit_fraction = static_cast<double>(all.n_unit) / n_edges;
+  out.length_min = all.length_min;
+  out.length_mean = all.length / n_edges;
+  out.length_max = all.length_max;
+  out.length_histogram.assign(all.lengths.begin(), all.lengths.end());
+  out.quality_min = all.quality_min;
   out.quality_mean =
-      quality_sum / static_cast<double>(std::max<std::size_t>(cells.size(), 1));
+      all.quality / static_cast<double>(std::max<std::size_t>(cells.size(), 1));
+  out.quality_histogram.assign(all.qualities.begin(), all.qualities.end());
   return out;
 }
 
@@ -58,23 +106,28 @@ double distortion(const SymmetricTensor<2> &M, const SymmetricTensor<2> &N) {
 }
 
 DistortionQuantiles distortion_quantiles(std::span<const Vertex<2>> vertices,
-                                         std::span<const Cell<2>> cells) {
-  std::vector<double> values;
-  values.reserve(3 * cells.size());
-  for (const Cell<2> &cell : cells)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [a, b] = facet_of<2>(cell, i); // interior edges count twice
-      values.push_back(std::log(distortion(vertices[static_cast<std::size_t>(a)].M,
-                                           vertices[static_cast<std::size_t>(b)].M)));
-    }
-  const auto quantile = [&](double q) {
-    const auto k = static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + k, values.end());
-    return values[static_cast<std::size_t>(k)];
-  };
+                                         std::span<const Cell<2>> cells, int threads) {
+  std::vector<double> values(3 * cells.size());
   if (values.empty())
     return {};
-  return {quantile(.5), quantile(.9), quantile(.99), quantile(1)};
+  parallel_ranges(cells.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto [a, b] = facet_of<2>(cells[c], i); // interior edges count twice
+        values[3 * c + i] = distortion(vertices[static_cast<std::size_t>(a)].M,
+                                       vertices[static_cast<std::size_t>(b)].M);
+      }
+  });
+  auto sorted = values.begin(); // what lies before is below all that follows
+  const auto quantile = [&](double q) {
+    const auto k = static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
+    const auto at = values.begin() + k;
+    std::nth_element(sorted, at, values.end());
+    sorted = at;
+    return std::log(*at);
+  };
+  const double p50 = quantile(.5), p90 = quantile(.9), p99 = quantile(.99);
+  return {p50, p90, p99, quantile(1)};
 }
 
 } // namespace anistar

@@ -140,7 +140,8 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
   RemeshResult out;
   {
     nb::gil_scoped_release release;
-    const Background<2> background(points_of<2>(points), cells_of<2>(cells), tensors);
+    const Background<2> background(points_of<2>(points), cells_of<2>(cells), tensors,
+                                   threads);
     out = remesh(background, geometry, projection, settings, progress_of(callback));
   }
   nb::dict result;
