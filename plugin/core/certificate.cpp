@@ -6,65 +6,82 @@
 
 namespace anistar {
 
-Index DelaunayTest::violator(Index cell, const SymmetricTensor<2> &M) {
-  const auto vertex = [&](Index v) -> const Vector<2> & {
+template <std::size_t d> void DelaunayTest<d>::begin_walk() {
+  front_.clear();
+  if (++epoch_ != 0)
+    return;
+  std::fill(stamp_.begin(), stamp_.end(), 0);
+  std::fill(known_.begin(), known_.end(), Known{});
+  epoch_ = 1;
+}
+
+template <std::size_t d> void DelaunayTest<d>::cross(Index from, std::size_t i) {
+  const auto k = static_cast<std::size_t>(from);
+  const HalfFacet beyond = mesh_.neighbours[k][i];
+  if (mesh_.constraints[k][i] == none && beyond.exists() &&
+      stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_)
+    front_.push_back(beyond);
+}
+
+template <std::size_t d>
+Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
+  const auto vertex = [&](Index v) -> const Vector<d> & {
     return mesh_.vertices[static_cast<std::size_t>(v)].x;
   };
-  const auto cell_at = [&](Index c) -> const Cell<2> & {
+  const auto cell_at = [&](Index c) -> const Cell<d> & {
     return mesh_.cells[static_cast<std::size_t>(c)];
   };
-  const Cell<2> &simplex = cell_at(cell);
-  const Vector<2> &a = vertex(simplex[0]), &b = vertex(simplex[1]),
-                  &c = vertex(simplex[2]);
-  if (++epoch_ == 0) {
-    std::fill(stamp_.begin(), stamp_.end(), 0);
-    epoch_ = 1;
+  begin_walk();
+  Simplex<d> simplex;
+  for (std::size_t k = 0; k <= d; ++k) {
+    const Index v = cell_at(cell)[k];
+    simplex[k] = vertex(v);
+    known_[static_cast<std::size_t>(v)] = {epoch_, {}};
   }
+  const Circumball<d> ball(M, simplex);
   stamp_[static_cast<std::size_t>(cell)] = epoch_;
-  front_.clear();
-  // powers are those of the facet's vertices as seen from the cell that is left
-  const auto cross = [&](Index from, std::size_t i, const Power &first,
-                         const Power &second) {
-    const auto k = static_cast<std::size_t>(from);
-    const HalfFacet beyond = mesh_.neighbours[k][i];
-    if (mesh_.constraints[k][i] == none && beyond.exists() &&
-        stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_)
-      front_.push_back({beyond, second, first});
-  };
-  for (std::size_t i = 0; i < 3; ++i)
-    cross(cell, i, {}, {});
+  for (std::size_t i = 0; i <= d; ++i)
+    cross(cell, i);
   for (std::size_t k = 0; k < front_.size(); ++k) {
-    const Front front = front_[k];
-    const Index c0 = front.entry.cell();
-    std::uint32_t &seen = stamp_[static_cast<std::size_t>(c0)];
+    const HalfFacet entry = front_[k];
+    std::uint32_t &seen = stamp_[static_cast<std::size_t>(entry.cell())];
     if (seen == epoch_)
       continue;
     seen = epoch_;
-    const std::size_t i = front.entry.facet();
-    const Cell<2> &far = cell_at(c0);
-    const Index apex = far[i];
-    const Vector<2> &e = vertex(apex);
-    Power power;
-    if (apex != simplex[0] && apex != simplex[1] && apex != simplex[2]) {
-      power = sphere_power(M, a, b, c, e);
-      if (power.value < -power.error ||
-          (power.value <= power.error &&
-           in_metric_sphere(M, a, b, c, e) == Side::inside))
+    const Cell<d> &far = cell_at(entry.cell());
+    const Index apex = far[entry.facet()];
+    if (Known &known = known_[static_cast<std::size_t>(apex)]; known.epoch != epoch_) {
+      known = {epoch_, ball.power(vertex(apex))};
+      switch (ball.side(vertex(apex), known.power)) {
+      case Side::inside:
         return apex;
+      case Side::boundary:
+        known.power = {};
+        break;
+      case Side::outside:
+        break;
+      }
     }
-    // facet i is (p, q); the other two are (q, e) and (e, p)
-    const Vector<2> &p = vertex(far[(i + 1) % 3]), &q = vertex(far[(i + 2) % 3]);
-    if (segment_meets_sphere(M, a, b, c, q, e, front.second, power))
-      cross(c0, (i + 1) % 3, front.second, power);
-    if (segment_meets_sphere(M, a, b, c, e, p, power, front.first))
-      cross(c0, (i + 2) % 3, power, front.first);
+    for (std::size_t i = 0; i <= d; ++i) {
+      if (i == entry.facet())
+        continue;
+      const Facet<d> facet = facet_of<d>(far, i);
+      std::array<Vector<d>, d> corners;
+      std::array<Bounded, d> powers;
+      for (std::size_t n = 0; n < d; ++n) {
+        corners[n] = vertex(facet[n]);
+        powers[n] = known_[static_cast<std::size_t>(facet[n])].power;
+      }
+      if (ball.meets(corners, powers))
+        cross(entry.cell(), i);
+    }
   }
   return none;
 }
 
-std::uint8_t DelaunayTest::bits(Index cell) {
+template <std::size_t d> std::uint8_t DelaunayTest<d>::bits(Index cell) {
   unsigned found = 0;
-  for (unsigned k = 0; k < 3; ++k) {
+  for (unsigned k = 0; k <= d; ++k) {
     const Index v = mesh_.cells[static_cast<std::size_t>(cell)][k];
     if (violator(cell, mesh_.vertices[static_cast<std::size_t>(v)].M) == none)
       found |= 1u << k;
@@ -72,14 +89,20 @@ std::uint8_t DelaunayTest::bits(Index cell) {
   return static_cast<std::uint8_t>(found);
 }
 
-std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<2> mesh, int threads) {
+template <std::size_t d>
+std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<d> mesh, int threads) {
   std::vector<std::uint8_t> bits(mesh.cells.size(), 0);
   parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end) {
-    DelaunayTest test(mesh);
+    DelaunayTest<d> test(mesh);
     for (std::size_t c = begin; c < end; ++c)
       bits[c] = test.bits(static_cast<Index>(c));
   });
   return bits;
 }
+
+template class DelaunayTest<2>;
+template class DelaunayTest<3>;
+template std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<2>, int);
+template std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<3>, int);
 
 } // namespace anistar

@@ -9,6 +9,7 @@
 // RR-7712 v2, section 3).
 
 #include "adjacency.h"
+#include "circumball.h"
 #include "measures.h"
 
 #include <array>
@@ -19,7 +20,8 @@
 namespace anistar {
 
 /// The bits of a cell that is Delaunay in the metrics of all its vertices.
-inline constexpr std::uint8_t all_vertices = 7;
+template <std::size_t d>
+inline constexpr std::uint8_t all_vertices = (1u << (d + 1)) - 1;
 
 /// A mesh as the certificate sees it.
 template <std::size_t d> struct CertifiedMesh {
@@ -31,34 +33,37 @@ template <std::size_t d> struct CertifiedMesh {
 };
 
 /// Decides for one simplex and metric after another; one object to a thread.
-class DelaunayTest {
+template <std::size_t d> class DelaunayTest {
 public:
-  explicit DelaunayTest(CertifiedMesh<2> mesh)
-      : mesh_(mesh), stamp_(mesh.cells.size(), 0) {}
+  explicit DelaunayTest(CertifiedMesh<d> mesh)
+      : mesh_(mesh), stamp_(mesh.cells.size(), 0), known_(mesh.vertices.size()) {}
 
   /// The first vertex found inside the M-circumball of `cell` that it can reach, `none`
   /// when it is Delaunay.
-  [[nodiscard]] Index violator(Index cell, const SymmetricTensor<2> &M);
+  [[nodiscard]] Index violator(Index cell, const SymmetricTensor<d> &M);
 
   /// Bit k: the cell is Delaunay in the metric of its vertex k.
   [[nodiscard]] std::uint8_t bits(Index cell);
 
 private:
-  CertifiedMesh<2> mesh_;
-  std::vector<std::uint32_t> stamp_;
-  std::uint32_t epoch_ = 0;
-
-  /// A facet that meets the open ball, as seen from its far cell, and the powers of its
-  /// vertices.
-  struct Front {
-    HalfFacet entry;
-    Power first, second;
+  /// The power of a vertex in the ball of this epoch.
+  struct Known {
+    std::uint32_t epoch = 0;
+    Bounded power;
   };
-  std::vector<Front> front_;
+  CertifiedMesh<d> mesh_;
+  std::vector<std::uint32_t> stamp_; ///< per cell, the epoch of its last visit
+  std::vector<Known> known_;         ///< per vertex
+  std::uint32_t epoch_ = 0;
+  std::vector<HalfFacet> front_; ///< facets that meet the open ball, from beyond
+
+  void begin_walk();
+  void cross(Index from, std::size_t i);
 };
 
 /// Bit k of result[c]: cell c is Delaunay in the metric of its vertex k.
-[[nodiscard]] std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<2> mesh,
+template <std::size_t d>
+[[nodiscard]] std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<d> mesh,
                                                       int threads);
 
 } // namespace anistar

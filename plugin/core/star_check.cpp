@@ -51,7 +51,7 @@ private:
   Triangulation<2> &mesh_;
   std::uint64_t seed_;
   Relocation relocation_;
-  DelaunayTest test_;
+  DelaunayTest<2> test_;
   std::vector<std::uint32_t> seen_;
   std::uint32_t epoch_ = 0;
   std::vector<HalfFacet> ring_;
@@ -115,7 +115,7 @@ private:
 std::vector<Index> failing_cells(const std::vector<std::uint8_t> &bits) {
   std::vector<Index> cells;
   for (std::size_t c = 0; c < bits.size(); ++c)
-    if (bits[c] != all_vertices)
+    if (bits[c] != all_vertices<2>)
       cells.push_back(static_cast<Index>(c));
   return cells;
 }
@@ -124,7 +124,7 @@ void count_certified(const Triangulation<2> &mesh, StarCheck &check) {
   std::vector<bool> ok(mesh.vertices.size(), true);
   std::size_t cells = 0;
   for (std::size_t c = 0; c < check.bits.size(); ++c) {
-    cells += check.bits[c] == all_vertices;
+    cells += check.bits[c] == all_vertices<2>;
     for (std::size_t k = 0; k < 3; ++k)
       if ((check.bits[c] >> k & 1) == 0)
         ok[static_cast<std::size_t>(mesh.cells[c][k])] = false;
@@ -142,7 +142,7 @@ StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed, int th
   StarCheck check;
   Mender mender(w, seed);
   for (int round = 0; round <= max_rounds; ++round) {
-    check.bits = delaunay_bits(
+    check.bits = delaunay_bits<2>(
         {mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints}, threads);
     const std::vector<Index> failing = failing_cells(check.bits);
     if (round == 0)

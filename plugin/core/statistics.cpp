@@ -57,6 +57,17 @@ double distortion(const SymmetricTensor<2> &M, const SymmetricTensor<2> &N) {
   return std::sqrt(std::max(large, large / product));
 }
 
+double distortion(const SymmetricTensor<3> &M, const SymmetricTensor<3> &N) {
+  // the largest eigenvalue of N in M; a closed form loses digits of the others only
+  const auto stretch = [](const SymmetricTensor<3> &A, const SymmetricTensor<3> &B) {
+    Eigen::SelfAdjointEigenSolver<Matrix<3>> solver;
+    solver.computeDirect(as_matrix(congruent<3>(lower_factor(A), B)),
+                         Eigen::EigenvaluesOnly);
+    return solver.eigenvalues()[2];
+  };
+  return std::sqrt(std::max({1., stretch(M, N), stretch(N, M)}));
+}
+
 DistortionQuantiles distortion_quantiles(std::span<const Vertex<2>> vertices,
                                          std::span<const Cell<2>> cells) {
   std::vector<double> values;

@@ -39,5 +39,7 @@ distortion_quantiles(std::span<const Vertex<2>> vertices,
 /// (RR-7712 v2, section 2).
 [[nodiscard]] double distortion(const SymmetricTensor<2> &M,
                                 const SymmetricTensor<2> &N);
+[[nodiscard]] double distortion(const SymmetricTensor<3> &M,
+                                const SymmetricTensor<3> &N);
 
 } // namespace anistar
