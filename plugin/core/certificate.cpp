@@ -15,66 +15,72 @@ template <std::size_t d> void DelaunayTest<d>::begin_walk() {
   epoch_ = 1;
 }
 
-template <std::size_t d> void DelaunayTest<d>::cross(Index from, std::size_t i) {
+template <std::size_t d>
+HalfFacet DelaunayTest<d>::door(Index from, std::size_t i) const {
   const auto k = static_cast<std::size_t>(from);
   const HalfFacet beyond = mesh_.neighbours[k][i];
-  if (mesh_.constraints[k][i] == none && beyond.exists() &&
-      stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_)
-    front_.push_back(beyond);
+  const bool is_open = mesh_.constraints[k][i] == none && beyond.exists() &&
+                       stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_;
+  return is_open ? beyond : HalfFacet();
+}
+
+template <std::size_t d> void DelaunayTest<d>::enter(HalfFacet door) {
+  stamp_[static_cast<std::size_t>(door.cell())] = epoch_;
+  front_.push_back(door);
+}
+
+template <std::size_t d>
+Side DelaunayTest<d>::side(const Circumball<d> &ball, Index v) {
+  Known &known = known_[static_cast<std::size_t>(v)];
+  if (known.epoch == epoch_)
+    return Side::outside; // of the simplex, or seen before
+  const Vector<d> &x = mesh_.vertices[static_cast<std::size_t>(v)].x;
+  known = {epoch_, ball.power(x)};
+  const Side found = ball.side(x, known.power);
+  if (found == Side::boundary)
+    known.power = {};
+  return found;
+}
+
+template <std::size_t d>
+bool DelaunayTest<d>::meets(const Circumball<d> &ball, const Facet<d> &facet) const {
+  std::array<const Vector<d> *, d> corners;
+  std::array<Bounded, d> powers;
+  for (std::size_t n = 0; n < d; ++n) {
+    const auto v = static_cast<std::size_t>(facet[n]);
+    corners[n] = &mesh_.vertices[v].x;
+    powers[n] = known_[v].power;
+  }
+  return ball.meets(corners, powers);
 }
 
 template <std::size_t d>
 Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
-  const auto vertex = [&](Index v) -> const Vector<d> & {
-    return mesh_.vertices[static_cast<std::size_t>(v)].x;
-  };
   const auto cell_at = [&](Index c) -> const Cell<d> & {
     return mesh_.cells[static_cast<std::size_t>(c)];
   };
   begin_walk();
   Simplex<d> simplex;
   for (std::size_t k = 0; k <= d; ++k) {
-    const Index v = cell_at(cell)[k];
-    simplex[k] = vertex(v);
-    known_[static_cast<std::size_t>(v)] = {epoch_, {}};
+    const auto v = static_cast<std::size_t>(cell_at(cell)[k]);
+    simplex[k] = mesh_.vertices[v].x;
+    known_[v] = {epoch_, {}};
   }
   const Circumball<d> ball(M, simplex);
   stamp_[static_cast<std::size_t>(cell)] = epoch_;
   for (std::size_t i = 0; i <= d; ++i)
-    cross(cell, i);
+    if (const HalfFacet beyond = door(cell, i); beyond.exists())
+      enter(beyond);
   for (std::size_t k = 0; k < front_.size(); ++k) {
     const HalfFacet entry = front_[k];
-    std::uint32_t &seen = stamp_[static_cast<std::size_t>(entry.cell())];
-    if (seen == epoch_)
-      continue;
-    seen = epoch_;
     const Cell<d> &far = cell_at(entry.cell());
     const Index apex = far[entry.facet()];
-    if (Known &known = known_[static_cast<std::size_t>(apex)]; known.epoch != epoch_) {
-      known = {epoch_, ball.power(vertex(apex))};
-      switch (ball.side(vertex(apex), known.power)) {
-      case Side::inside:
-        return apex;
-      case Side::boundary:
-        known.power = {};
-        break;
-      case Side::outside:
-        break;
-      }
-    }
-    for (std::size_t i = 0; i <= d; ++i) {
-      if (i == entry.facet())
-        continue;
-      const Facet<d> facet = facet_of<d>(far, i);
-      std::array<Vector<d>, d> corners;
-      std::array<Bounded, d> powers;
-      for (std::size_t n = 0; n < d; ++n) {
-        corners[n] = vertex(facet[n]);
-        powers[n] = known_[static_cast<std::size_t>(facet[n])].power;
-      }
-      if (ball.meets(corners, powers))
-        cross(entry.cell(), i);
-    }
+    if (side(ball, apex) == Side::inside)
+      return apex;
+    for (std::size_t i = 0; i <= d; ++i)
+      if (const HalfFacet beyond = door(entry.cell(), i);
+          beyond.exists() && meets(ball, facet_of<d>(far, i)))
+        enter(beyond);
   }
   return none;
 }

@@ -58,7 +58,11 @@ private:
   std::vector<HalfFacet> front_; ///< facets that meet the open ball, from beyond
 
   void begin_walk();
-  void cross(Index from, std::size_t i);
+  /// The far side of a facet that is no wall, if the walk has not been there.
+  [[nodiscard]] HalfFacet door(Index from, std::size_t i) const;
+  void enter(HalfFacet door);
+  [[nodiscard]] Side side(const Circumball<d> &ball, Index v);
+  [[nodiscard]] bool meets(const Circumball<d> &ball, const Facet<d> &facet) const;
 };
 
 /// Bit k of result[c]: cell c is Delaunay in the metric of its vertex k.

@@ -108,8 +108,7 @@ private:
     for (const Cell<d> &cell : cells_)
       for (std::size_t i = 0; i < d; ++i)
         for (std::size_t j = i + 1; j <= d; ++j)
-          edges.push_back(
-              {std::min(cell[i], cell[j]), std::max(cell[i], cell[j])});
+          edges.push_back({std::min(cell[i], cell[j]), std::max(cell[i], cell[j])});
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return edges;
@@ -222,9 +221,9 @@ CertificateResult certify(std::span<const Vertex<d>> vertices,
 }
 
 template std::vector<std::array<Index, 3>>
-walls(std::span<const Cell<2>>, std::span<const Facet<2>>, std::size_t);
+    walls(std::span<const Cell<2>>, std::span<const Facet<2>>, std::size_t);
 template std::vector<std::array<Index, 4>>
-walls(std::span<const Cell<3>>, std::span<const Facet<3>>, std::size_t);
+    walls(std::span<const Cell<3>>, std::span<const Facet<3>>, std::size_t);
 template CertificateResult certify(std::span<const Vertex<2>>, std::span<const Cell<2>>,
                                    std::span<const Facet<2>>, int);
 template CertificateResult certify(std::span<const Vertex<3>>, std::span<const Cell<3>>,

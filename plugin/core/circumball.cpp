@@ -2,6 +2,7 @@
 
 #include <CGAL/Mpzf.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace anistar {
@@ -16,7 +17,9 @@ constexpr double bound = 32 * detail::round_off;
 enum class Answer { no, yes, doubtful };
 
 Answer is_positive(const Bounded &x) {
-  return x.is_positive() ? Answer::yes : x.is_negative() ? Answer::no : Answer::doubtful;
+  return x.is_positive()   ? Answer::yes
+         : x.is_negative() ? Answer::no
+                           : Answer::doubtful;
 }
 
 /// y^T diag(M) y; by the inequality of Cauchy and Schwarz, d times it is more than the
@@ -90,6 +93,8 @@ Exact bilinear(const SymmetricTensor<d> &M, const std::array<Exact, d> &u,
   return sum;
 }
 
+} // namespace
+
 /// Everything times the determinant of the simplex, which is positive.
 template <std::size_t d> struct ExactBall {
   using Row = std::array<Exact, d>;
@@ -114,6 +119,8 @@ template <std::size_t d> struct ExactBall {
     return determinant * bilinear<d>(M, y, y) - dot<d, Exact>(gradient, y);
   }
 };
+
+namespace {
 
 /// The power along p + s (q - p), alpha s^2 + beta s + gamma with alpha > 0 and gamma
 /// >= 0, is negative for some 0 < s < 1 when its minimum lies there and is negative.
@@ -144,24 +151,20 @@ PlaneMinimum<Number> plane_minimum(const Number &a, const Number &b, const Numbe
   return {-(s * e + t * f) - g2 * det2, {s, t, det2 - s - t}};
 }
 
-bool exactly_meets_triangle(const ExactBall<3> &ball,
-                            const std::array<Vector<3>, 3> &facet) {
-  const auto u = difference<3, Exact>(facet[1], facet[0]);
-  const auto v = difference<3, Exact>(facet[2], facet[0]);
+/// Whether the power is negative and minimal at a point inside the triangle.
+bool exactly_meets_inside(const ExactBall<3> &ball,
+                          const std::array<const Vector<3> *, 3> &facet) {
+  const auto u = difference<3, Exact>(*facet[1], *facet[0]);
+  const auto v = difference<3, Exact>(*facet[2], *facet[0]);
   const Exact a = ball.determinant * bilinear<3>(ball.M, u, u);
   const Exact b = ball.determinant * bilinear<3>(ball.M, u, v);
   const Exact c = ball.determinant * bilinear<3>(ball.M, v, v);
-  const Exact g = ball.power(facet[0]);
-  const auto minimum = plane_minimum<Exact>(a, b, c, ball.power(facet[1]) - g - a,
-                                            ball.power(facet[2]) - g - c, g);
-  if (CGAL::sign(minimum.depth) <= 0)
-    return false;
-  bool inside = true;
-  for (const Exact &side : minimum.side)
-    inside = inside && CGAL::sign(side) > 0;
-  return inside || exactly_meets_segment<3>(ball, facet[0], facet[1]) ||
-         exactly_meets_segment<3>(ball, facet[1], facet[2]) ||
-         exactly_meets_segment<3>(ball, facet[2], facet[0]);
+  const Exact g = ball.power(*facet[0]);
+  const auto minimum = plane_minimum<Exact>(a, b, c, ball.power(*facet[1]) - g - a,
+                                            ball.power(*facet[2]) - g - c, g);
+  return CGAL::sign(minimum.depth) > 0 &&
+         std::all_of(minimum.side.begin(), minimum.side.end(),
+                     [](const Exact &side) { return CGAL::sign(side) > 0; });
 }
 
 } // namespace
@@ -183,9 +186,8 @@ Circumball<d>::Circumball(const SymmetricTensor<d> &M, const Simplex<d> &simplex
     } else {
       const auto &p = f.edges[(k + 1) % 3], &q = f.edges[(k + 2) % 3];
       for (std::size_t i = 0; i < 3; ++i)
-        cofactor_size[static_cast<int>(i)] =
-            std::abs(p[(i + 1) % 3] * q[(i + 2) % 3]) +
-            std::abs(p[(i + 2) % 3] * q[(i + 1) % 3]);
+        cofactor_size[static_cast<int>(i)] = std::abs(p[(i + 1) % 3] * q[(i + 2) % 3]) +
+                                             std::abs(p[(i + 2) % 3] * q[(i + 1) % 3]);
     }
     if (k == 0)
       determinant_size = edge.cwiseAbs().dot(cofactor_size);
@@ -195,11 +197,18 @@ Circumball<d>::Circumball(const SymmetricTensor<d> &M, const Simplex<d> &simplex
   gradient_ = sum / f.determinant;
   const double rest = f.determinant - bound * determinant_size;
   if (rest > detail::underflow_guard)
-    gradient_error_ =
-        bound * (size + gradient_.cwiseAbs() * determinant_size) / rest +
-        bound * gradient_.cwiseAbs();
+    gradient_error_ = bound * (size + gradient_.cwiseAbs() * determinant_size) / rest +
+                      bound * gradient_.cwiseAbs();
   else
     gradient_error_.setConstant(std::numeric_limits<double>::infinity());
+}
+
+template <std::size_t d> Circumball<d>::~Circumball() = default;
+
+template <std::size_t d> const ExactBall<d> &Circumball<d>::exact() const {
+  if (!exact_)
+    exact_ = std::make_unique<const ExactBall<d>>(M_, simplex_);
+  return *exact_;
 }
 
 template <std::size_t d> Bounded Circumball<d>::power(const Vector<d> &x) const {
@@ -215,8 +224,8 @@ Side Circumball<d>::side(const Vector<d> &x, const Bounded &power) const {
     return Side::outside;
   if (power.is_negative())
     return Side::inside;
-  const Exact exact = ExactBall<d>(M_, simplex_).power(x);
-  return static_cast<Side>(-static_cast<int>(CGAL::sign(exact)));
+  const Exact value = exact().power(x);
+  return static_cast<Side>(-static_cast<int>(CGAL::sign(value)));
 }
 
 template <std::size_t d> Bounded Circumball<d>::square(const Vector<d> &y) const {
@@ -224,10 +233,15 @@ template <std::size_t d> Bounded Circumball<d>::square(const Vector<d> &y) const
 }
 
 template <std::size_t d>
-bool Circumball<d>::meets(const std::array<Vector<d>, d> &facet,
+bool Circumball<d>::meets(const std::array<const Vector<d> *, d> &facet,
                           const std::array<Bounded, d> &powers) const {
+  // an edge whose ends lie on the ellipsoid is inside it
+  if (std::count_if(powers.begin(), powers.end(), [](const Bounded &power) {
+        return power.value == 0 && power.error == 0;
+      }) >= 2)
+    return true;
   if constexpr (d == 2)
-    return meets_segment(facet[0], facet[1], powers[0], powers[1]);
+    return meets_segment(*facet[0], *facet[1], powers[0], powers[1]);
   else
     return meets_triangle(facet, powers);
 }
@@ -248,14 +262,14 @@ bool Circumball<d>::meets_segment(const Vector<d> &p, const Vector<d> &q,
     return false;
   if (falls == Answer::yes && rises == Answer::yes && dips == Answer::yes)
     return true;
-  return exactly_meets_segment<d>(ExactBall<d>(M_, simplex_), p, q);
+  return exactly_meets_segment<d>(exact(), p, q);
 }
 
 template <std::size_t d>
-bool Circumball<d>::meets_triangle(const std::array<Vector<d>, d> &facet,
+bool Circumball<d>::meets_triangle(const std::array<const Vector<d> *, d> &facet,
                                    const std::array<Bounded, d> &powers) const {
   if constexpr (d == 3) {
-    const Vector<3> u = facet[1] - facet[0], v = facet[2] - facet[0];
+    const Vector<3> u = *facet[1] - *facet[0], v = *facet[2] - *facet[0];
     const Bounded a = square(u), c = square(v);
     const Bounded b{u.dot(product<3>(M_, v)), .5 * (a.error + c.error)};
     const auto minimum = plane_minimum<Bounded>(a, b, c, powers[1] - powers[0] - a,
@@ -273,11 +287,10 @@ bool Circumball<d>::meets_triangle(const std::array<Vector<d>, d> &facet,
     }
     if (inside == Answer::yes && deep == Answer::yes)
       return true;
-    if (inside != Answer::no)
-      return exactly_meets_triangle(ExactBall<3>(M_, simplex_), facet);
-    return meets_segment(facet[0], facet[1], powers[0], powers[1]) ||
-           meets_segment(facet[1], facet[2], powers[1], powers[2]) ||
-           meets_segment(facet[2], facet[0], powers[2], powers[0]);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (meets_segment(*facet[k], *facet[(k + 1) % 3], powers[k], powers[(k + 1) % 3]))
+        return true;
+    return inside != Answer::no && exactly_meets_inside(exact(), facet);
   } else {
     return false;
   }

@@ -10,13 +10,20 @@
 #include "predicates.h"
 
 #include <array>
+#include <memory>
 
 namespace anistar {
 
+template <std::size_t d> struct ExactBall;
+
+/// One object to a thread.
 template <std::size_t d> class Circumball {
 public:
   /// @pre the simplex is positively oriented and outlives this object, as M does.
   Circumball(const SymmetricTensor<d> &M, const Simplex<d> &simplex);
+  ~Circumball();
+  Circumball(const Circumball &) = delete;
+  Circumball &operator=(const Circumball &) = delete;
 
   /// Negative inside.
   [[nodiscard]] Bounded power(const Vector<d> &x) const;
@@ -25,7 +32,7 @@ public:
 
   /// Whether a facet meets the open ball, given the powers of its vertices.
   /// @pre no vertex of the facet lies inside.
-  [[nodiscard]] bool meets(const std::array<Vector<d>, d> &facet,
+  [[nodiscard]] bool meets(const std::array<const Vector<d> *, d> &facet,
                            const std::array<Bounded, d> &powers) const;
 
 private:
@@ -34,10 +41,13 @@ private:
   Vector<d> gradient_;       ///< 2 g
   Vector<d> gradient_error_; ///< of each component; infinite for a flat simplex
 
+  mutable std::unique_ptr<const ExactBall<d>> exact_; ///< made at the first doubt
+
+  [[nodiscard]] const ExactBall<d> &exact() const;
   [[nodiscard]] Bounded square(const Vector<d> &y) const;
   [[nodiscard]] bool meets_segment(const Vector<d> &p, const Vector<d> &q,
                                    const Bounded &at_p, const Bounded &at_q) const;
-  [[nodiscard]] bool meets_triangle(const std::array<Vector<d>, d> &facet,
+  [[nodiscard]] bool meets_triangle(const std::array<const Vector<d> *, d> &facet,
                                     const std::array<Bounded, d> &powers) const;
 };
 

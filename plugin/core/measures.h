@@ -90,10 +90,9 @@ template <std::size_t d>
     const Vector<3> u = s[1] - s[0], v = s[2] - s[0], w = s[3] - s[0];
     const Vector<3> vw = v.cross(w);
     // M offset = g with 2 g.u = u^T M u, and so for v and w
-    const Vector<3> g =
-        (quadratic<3>(M, u) * vw + quadratic<3>(M, v) * w.cross(u) +
-         quadratic<3>(M, w) * u.cross(v)) /
-        (2 * u.dot(vw));
+    const Vector<3> g = (quadratic<3>(M, u) * vw + quadratic<3>(M, v) * w.cross(u) +
+                         quadratic<3>(M, w) * u.cross(v)) /
+                        (2 * u.dot(vw));
     const Matrix<3> L = lower_factor(M);
     const Vector<3> y = L.template triangularView<Eigen::Lower>().solve(g);
     const Vector<3> offset =
@@ -113,7 +112,7 @@ template <std::size_t d> [[nodiscard]] inline double volume(const Simplex<d> &s)
 /// The length of the shortest edge of a simplex in a metric.
 template <std::size_t d>
 [[nodiscard]] inline double shortest_length(const SymmetricTensor<d> &M,
-                                          const Simplex<d> &s) {
+                                            const Simplex<d> &s) {
   double square = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < d; ++i)
     for (std::size_t j = i + 1; j <= d; ++j)

@@ -21,8 +21,8 @@ template <std::size_t d> double angle_between(const Vector<d> &u, const Vector<d
 /// The solid angle of a, b, c seen from the origin (Van Oosterom and Strackee, 1983).
 double solid_angle(const Vector<3> &a, const Vector<3> &b, const Vector<3> &c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2 * std::atan2(std::abs(a.dot(b.cross(c))), la * lb * lc + a.dot(b) * lc +
-                                                         b.dot(c) * la + c.dot(a) * lb);
+  return 2 * std::atan2(std::abs(a.dot(b.cross(c))),
+                        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
 /// The vertices of a cell but i and j: what two facets share.
@@ -173,7 +173,8 @@ private:
       for (std::size_t n = 0; n < cells.size(); ++n) {
         const Index c = cells[n];
         const Facet<3> far = facet_of<3>(cell_at(c), local(cell_at(c), tip));
-        total += solid_angle(x(far[0]) - x(tip), x(far[1]) - x(tip), x(far[2]) - x(tip));
+        total +=
+            solid_angle(x(far[0]) - x(tip), x(far[1]) - x(tip), x(far[2]) - x(tip));
         for (std::size_t i = 0; i <= d; ++i) {
           if (cell_at(c)[i] == tip)
             continue;

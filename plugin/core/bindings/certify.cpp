@@ -111,10 +111,10 @@ bool meets_ball(const Array2<double> &metric, const Array2<double> &simplex,
   const SymmetricTensor<d> M = tensor_of<d>(metric);
   const Simplex<d> s = simplex_of<d>(simplex);
   const Circumball<d> ball(M, s);
-  std::array<Vector<d>, d> corners;
+  std::array<const Vector<d> *, d> corners;
   std::array<Bounded, d> powers;
   for (std::size_t k = 0; k < d; ++k) {
-    corners[k] = y[k];
+    corners[k] = &y[k];
     powers[k] = ball.power(y[k]);
     if (ball.side(y[k], powers[k]) == Side::inside)
       return true;
@@ -139,7 +139,7 @@ template <std::size_t d> void bind_dimension(nb::module_ &module) {
              nb::arg("metric").noconvert(), nb::arg("simplex").noconvert(),
              nb::arg("point").noconvert(),
              "Exactly: 1 inside, 0 on, -1 outside the circumscribed ellipsoid.");
- module.def(("side_of_metric_ball" + suffix).c_str(), &side_of_ball<d>,
+  module.def(("side_of_metric_ball" + suffix).c_str(), &side_of_ball<d>,
              nb::arg("metric").noconvert(), nb::arg("simplex").noconvert(),
              nb::arg("point").noconvert(),
              "The same as in_metric_sphere, as the certificate computes it.");
