@@ -8,7 +8,7 @@ from typing import Any
 
 from .errors import MeshingError
 from .mesh import Mesh
-from .topology import cell_volumes, facet_measures, measure_by_tag
+from .topology import cell_volumes, edge_lengths, facet_measures, measure_by_tag
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,7 +112,10 @@ def report_of(raw: Mapping[str, Any], geometry: Mesh, new: Mesh) -> RemeshReport
 def tag_measures(geometry: Mesh, new: Mesh) -> tuple[TagMeasure, ...]:
     """Compare what every tag carries; a tag that is gone is an error."""
     found = []
-    for dim, kind in ((geometry.dim - 1, "facet"), (geometry.dim, "cell")):
+    kinds: tuple[tuple[int, str], ...] = ((geometry.dim - 1, "facet"), (geometry.dim, "cell"))
+    if geometry.dim == 3 and len(new.edges):
+        kinds = ((1, "edge"), *kinds)
+    for dim, kind in kinds:
         before, after = (_measures(mesh, kind) for mesh in (geometry, new))
         lost = sorted(set(before) - set(after))
         if lost:
@@ -124,6 +127,8 @@ def tag_measures(geometry: Mesh, new: Mesh) -> tuple[TagMeasure, ...]:
 
 
 def _measures(mesh: Mesh, kind: str) -> dict[int, float]:
+    if kind == "edge":
+        return measure_by_tag(edge_lengths(mesh.points, mesh.edges), mesh.edge_tags)
     if kind == "facet":
         return measure_by_tag(facet_measures(mesh.points, mesh.facets), mesh.facet_tags)
     return measure_by_tag(cell_volumes(mesh.points, mesh.cells), mesh.cell_tags)

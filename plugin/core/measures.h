@@ -57,6 +57,25 @@ template <std::size_t d>
   return 2 * std::numbers::sqrt3 * cross(u, v) / (dense.weight * squares);
 }
 
+/// The same for a tetrahedron.
+[[nodiscard]] inline double quality(const Vertex<3> &a, const Vertex<3> &b,
+                                    const Vertex<3> &c, const Vertex<3> &e) {
+  const Vertex<3> *dense = &a;
+  for (const Vertex<3> *v : {&b, &c, &e})
+    if (v->weight < dense->weight)
+      dense = v;
+  const Vector<3> u = b.x - a.x, v = c.x - a.x, w = e.x - a.x;
+  const SymmetricTensor<3> &M = dense->M;
+  const double squares = quadratic<3>(M, u) + quadratic<3>(M, v) + quadratic<3>(M, w) +
+                         quadratic<3>(M, Vector<3>(v - u)) +
+                         quadratic<3>(M, Vector<3>(w - u)) +
+                         quadratic<3>(M, Vector<3>(w - v));
+  // the volume of the unit regular tetrahedron is sqrt(2) / 12
+  const double det = u.dot(v.cross(w)) / dense->weight;
+  const double root = std::cbrt(det * std::numbers::sqrt2);
+  return std::copysign(6 * root * root / squares, det);
+}
+
 /// The circumscribed ellipsoid of a simplex in a metric.
 template <std::size_t d> struct Circumsphere {
   Vector<d> centre;

@@ -99,7 +99,7 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                    const RemeshSettings &settings, Stopwatch &watch,
                    RemeshResult &out) {
   watch.phase("agreement");
-  out.distortion = distortion_quantiles(w.mesh.vertices, w.mesh.cells);
+  out.distortion = distortion_quantiles<2>(w.mesh.vertices, w.mesh.cells);
   const bool can_agree = out.distortion.p99 <= largest_agreeing_distortion;
   const bool is_pure = settings.consistency == ConsistencyMode::pure;
   if (settings.agreement == AgreementMode::off &&
@@ -191,7 +191,7 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
 
   watch.phase("report");
   extract(w, out);
-  out.statistics = measure(out.vertices, out.cells);
+  out.statistics = measure<2>(out.vertices, out.cells);
   watch.stop();
   out.counts["inserted"] = static_cast<double>(refined.inserted);
   out.counts["boundary_splits"] = static_cast<double>(refined.boundary_splits);

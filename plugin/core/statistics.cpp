@@ -1,42 +1,77 @@
 #include "statistics.h"
 
 namespace anistar {
+namespace {
 
-Statistics measure(std::span<const Vertex<2>> vertices,
-                   std::span<const Cell<2>> cells) {
+/// The edges of the cells, each once, as pairs of indices in increasing order.
+template <std::size_t d>
+std::vector<std::array<Index, 2>> edges_of(std::span<const Cell<d>> cells,
+                                           std::size_t n_vertices) {
+  // a counting sort by the lower end, then a sort of every bucket
+  std::vector<std::size_t> start(n_vertices + 1, 0);
+  const auto each = [&](auto visit) {
+    for (const Cell<d> &cell : cells)
+      for (std::size_t i = 0; i <= d; ++i)
+        for (std::size_t j = i + 1; j <= d; ++j)
+          visit(static_cast<std::size_t>(std::min(cell[i], cell[j])),
+                std::max(cell[i], cell[j]));
+  };
+  each([&](std::size_t low, Index) { ++start[low + 1]; });
+  for (std::size_t v = 0; v < n_vertices; ++v)
+    start[v + 1] += start[v];
+  std::vector<Index> high(start.back());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  each([&](std::size_t low, Index other) { high[next[low]++] = other; });
+  std::vector<std::array<Index, 2>> edges;
+  for (std::size_t v = 0; v < n_vertices; ++v) {
+    const auto begin = high.begin() + static_cast<std::ptrdiff_t>(start[v]),
+               end = high.begin() + static_cast<std::ptrdiff_t>(start[v + 1]);
+    std::sort(begin, end);
+    const auto last = std::unique(begin, end);
+    for (auto it = begin; it != last; ++it)
+      edges.push_back({static_cast<Index>(v), *it});
+  }
+  return edges;
+}
+
+} // namespace
+
+template <std::size_t d>
+Statistics measure(std::span<const Vertex<d>> vertices,
+                   std::span<const Cell<d>> cells) {
   Statistics out;
   const std::span bins(Statistics::length_bins);
   out.length_histogram.assign(bins.size() + 1, 0);
   out.quality_histogram.assign(Statistics::n_quality_bins, 0);
-  const auto vertex = [&](Index v) -> const Vertex<2> & {
+  const auto vertex = [&](Index v) -> const Vertex<d> & {
     return vertices[static_cast<std::size_t>(v)];
   };
-  const auto neighbours = adjacency<2>(cells, vertices.size());
   double length_sum = 0, quality_sum = 0;
   std::size_t unit = 0;
   out.length_min = out.quality_min = std::numeric_limits<double>::infinity();
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    const Cell<2> &cell = cells[c];
-    const double q = quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2]));
+  for (const Cell<d> &cell : cells) {
+    const double q = [&] {
+      if constexpr (d == 2)
+        return quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2]));
+      else
+        return quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2]),
+                       vertex(cell[3]));
+    }();
     quality_sum += q;
     out.quality_min = std::min(out.quality_min, q);
     const double bin = std::clamp(q, 0., 1.) * Statistics::n_quality_bins;
     ++out.quality_histogram[std::min(Statistics::n_quality_bins - 1,
                                      static_cast<std::size_t>(bin))];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const HalfFacet other = neighbours[c][i];
-      if (other.exists() && static_cast<std::size_t>(other.cell()) < c)
-        continue; // counted from the other side
-      const auto [a, b] = facet_of<2>(cell, i);
-      const double l = edge_length(vertex(a), vertex(b));
-      ++out.n_edges;
-      length_sum += l;
-      out.length_min = std::min(out.length_min, l);
-      out.length_max = std::max(out.length_max, l);
-      unit += l >= shortest_unit && l <= longest_unit;
-      ++out.length_histogram[static_cast<std::size_t>(
-          std::upper_bound(bins.begin(), bins.end(), l) - bins.begin())];
-    }
+  }
+  for (const auto &[a, b] : edges_of<d>(cells, vertices.size())) {
+    const double l = edge_length(vertex(a), vertex(b));
+    ++out.n_edges;
+    length_sum += l;
+    out.length_min = std::min(out.length_min, l);
+    out.length_max = std::max(out.length_max, l);
+    unit += l >= shortest_unit && l <= longest_unit;
+    ++out.length_histogram[static_cast<std::size_t>(
+        std::upper_bound(bins.begin(), bins.end(), l) - bins.begin())];
   }
   const double n_edges = static_cast<double>(std::max<std::size_t>(out.n_edges, 1));
   out.unit_fraction = static_cast<double>(unit) / n_edges;
@@ -68,16 +103,14 @@ double distortion(const SymmetricTensor<3> &M, const SymmetricTensor<3> &N) {
   return std::sqrt(std::max({1., stretch(M, N), stretch(N, M)}));
 }
 
-DistortionQuantiles distortion_quantiles(std::span<const Vertex<2>> vertices,
-                                         std::span<const Cell<2>> cells) {
+template <std::size_t d>
+DistortionQuantiles distortion_quantiles(std::span<const Vertex<d>> vertices,
+                                         std::span<const Cell<d>> cells) {
   std::vector<double> values;
-  values.reserve(3 * cells.size());
-  for (const Cell<2> &cell : cells)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [a, b] = facet_of<2>(cell, i); // interior edges count twice
-      values.push_back(std::log(distortion(vertices[static_cast<std::size_t>(a)].M,
-                                           vertices[static_cast<std::size_t>(b)].M)));
-    }
+  values.reserve((d + 1) * cells.size());
+  for (const auto &[a, b] : edges_of<d>(cells, vertices.size()))
+    values.push_back(std::log(distortion(vertices[static_cast<std::size_t>(a)].M,
+                                         vertices[static_cast<std::size_t>(b)].M)));
   const auto quantile = [&](double q) {
     const auto k = static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + k, values.end());
@@ -87,5 +120,12 @@ DistortionQuantiles distortion_quantiles(std::span<const Vertex<2>> vertices,
     return {};
   return {quantile(.5), quantile(.9), quantile(.99), quantile(1)};
 }
+
+template Statistics measure<2>(std::span<const Vertex<2>>, std::span<const Cell<2>>);
+template Statistics measure<3>(std::span<const Vertex<3>>, std::span<const Cell<3>>);
+template DistortionQuantiles distortion_quantiles<2>(std::span<const Vertex<2>>,
+                                                     std::span<const Cell<2>>);
+template DistortionQuantiles distortion_quantiles<3>(std::span<const Vertex<3>>,
+                                                     std::span<const Cell<3>>);
 
 } // namespace anistar

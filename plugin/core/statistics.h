@@ -23,17 +23,19 @@ struct Statistics {
 };
 
 /// Edge lengths and qualities by the metric at the vertices.
-[[nodiscard]] Statistics measure(std::span<const Vertex<2>> vertices,
-                                 std::span<const Cell<2>> cells);
+template <std::size_t d>
+[[nodiscard]] Statistics measure(std::span<const Vertex<d>> vertices,
+                                 std::span<const Cell<d>> cells);
 
 /// Quantiles of ln gamma, the logarithm of the distortion between the metrics at the
 /// two ends of an edge: what decides whether stars can agree.
 struct DistortionQuantiles {
   double p50 = 0, p90 = 0, p99 = 0, maximum = 0;
 };
+template <std::size_t d>
 [[nodiscard]] DistortionQuantiles
-distortion_quantiles(std::span<const Vertex<2>> vertices,
-                     std::span<const Cell<2>> cells);
+distortion_quantiles(std::span<const Vertex<d>> vertices,
+                     std::span<const Cell<d>> cells);
 
 /// gamma(M, N) = max(|F_M^-1 F_N|, |F_N^-1 F_M|), the distortion between two metrics
 /// (RR-7712 v2, section 2).

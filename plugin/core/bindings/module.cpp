@@ -6,4 +6,5 @@ NB_MODULE(_core, module) {
   anistar::bindings::bind_gradation(module);
   anistar::bindings::bind_locator(module);
   anistar::bindings::bind_remesh(module);
+  anistar::bindings::bind_volume_remesh(module);
 }
