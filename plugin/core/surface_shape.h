@@ -1,13 +1,16 @@
 #pragma once
 // Where new vertices of a surface or a ridge go.
 
-#include "box_tree.h"
+#include "adjacency.h"
+#include "tensor.h"
 
 #include <functional>
-#include <optional>
+#include <memory>
 #include <span>
 
 namespace anistar {
+
+class SmoothSurface;
 
 /// The surfaces and edges that bound or cross a domain.
 struct SurfaceInput {
@@ -41,8 +44,8 @@ struct Curve {
 using SurfaceProjection = std::function<Vector<3>(const Vector<3> &, Index tag)>;
 
 /// Planes and lines are exact to round-off: what lies on one is put back on it. A
-/// curved patch or ridge is approached by the nearest point of the geometry's triangles
-/// or ridge edges with its tag.
+/// point of a curved patch or ridge goes to its foot on the smooth surface or ridge of
+/// the geometry with its tag.
 class SurfaceShape {
 public:
   /// @param patches, curves those of the mesh
@@ -72,20 +75,10 @@ public:
   }
 
 private:
-  /// Triangles or segments (their third corner repeats the second) with one tag.
-  struct Pieces {
-    Index tag;
-    std::vector<std::array<Vector<3>, 3>> triangles;
-    BoxTree<3> tree{{}};
-  };
-
   std::vector<Patch> patches_;
   std::vector<Curve> curves_;
-  std::vector<Pieces> surfaces_, ridges_;
+  std::shared_ptr<const SmoothSurface> geometry_; ///< null when nothing is curved
   SurfaceProjection projection_;
-
-  [[nodiscard]] static std::optional<Vector<3>>
-  nearest(const std::vector<Pieces> &pieces, Index tag, const Vector<3> &x);
 };
 
 } // namespace anistar

@@ -9,6 +9,7 @@ void bind_certify(nanobind::module_ &module);
 void bind_gradation(nanobind::module_ &module);
 void bind_locator(nanobind::module_ &module);
 void bind_remesh(nanobind::module_ &module);
+void bind_surface(nanobind::module_ &module);
 void bind_volume_remesh(nanobind::module_ &module);
 
 } // namespace anistar::bindings

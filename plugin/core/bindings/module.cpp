@@ -6,5 +6,6 @@ NB_MODULE(_core, module) {
   anistar::bindings::bind_gradation(module);
   anistar::bindings::bind_locator(module);
   anistar::bindings::bind_remesh(module);
+  anistar::bindings::bind_surface(module);
   anistar::bindings::bind_volume_remesh(module);
 }
