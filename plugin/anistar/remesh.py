@@ -183,7 +183,7 @@ def remesh(
         names={**mesh.names, **geometry.names},
         **ridges,
     )
-    report = report_of(raw, geometry, new)
+    report = report_of(raw, geometry, new, has_ridges=len(mesh.edges) > 0)
     return Remeshed(new, raw["metric"] * scale**2, report)
 
 

@@ -83,8 +83,12 @@ class RemeshReport:
         return out
 
 
-def report_of(raw: Mapping[str, Any], geometry: Mesh, new: Mesh) -> RemeshReport:
+def report_of(
+    raw: Mapping[str, Any], geometry: Mesh, new: Mesh, has_ridges: bool = False
+) -> RemeshReport:
     """Return the report on what the core returned.
+
+    The ridges of the geometry count only if the mesh that was remeshed had some.
 
     Raises
     ------
@@ -103,17 +107,17 @@ def report_of(raw: Mapping[str, Any], geometry: Mesh, new: Mesh) -> RemeshReport
         simplex_ok=raw["simplex_ok"],
         star_ok=raw["star_ok"],
         distortion=raw["distortion"],
-        tags=tag_measures(geometry, new),
+        tags=tag_measures(geometry, new, has_ridges),
         counts=raw["counts"],
         seconds=raw["seconds"],
     )
 
 
-def tag_measures(geometry: Mesh, new: Mesh) -> tuple[TagMeasure, ...]:
+def tag_measures(geometry: Mesh, new: Mesh, has_ridges: bool = False) -> tuple[TagMeasure, ...]:
     """Compare what every tag carries; a tag that is gone is an error."""
     found = []
     kinds: tuple[tuple[int, str], ...] = ((geometry.dim - 1, "facet"), (geometry.dim, "cell"))
-    if geometry.dim == 3 and len(new.edges):
+    if geometry.dim == 3 and has_ridges:
         kinds = ((1, "edge"), *kinds)
     for dim, kind in kinds:
         before, after = (_measures(mesh, kind) for mesh in (geometry, new))

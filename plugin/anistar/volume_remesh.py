@@ -36,7 +36,7 @@ def remesh_volume(
         If an option asks for what exists in 2D only.
     """
     if options.agreement is True or options.until_consistent:
-        raise ValueError("agreement and until_consistent work on 2D meshes; this one has 3")
+        raise ValueError("agreement=True and until_consistent exist in 2D only")
     raw: dict[str, Any] = _core.remesh3(
         mesh.points * scale,
         mesh.cells,

@@ -45,8 +45,8 @@ public:
   void vertices(const VertexRule &rule);
   /// Swaps, collapses and splits at cells below `quality`, whatever improves.
   void repair(double quality);
-  /// Makes every pass look at everything.
-  void look_everywhere() { last_.fill(0); }
+  /// Makes a pass look at everything the next time.
+  void look_everywhere(Pass pass) { last_[static_cast<std::size_t>(pass)] = 0; }
   [[nodiscard]] double longest_edge() const;
   [[nodiscard]] const VolumeCounts &counts() const { return counts_; }
   [[nodiscard]] bool is_full() const { return is_full_; }

@@ -21,8 +21,11 @@ void grow(Volume &volume, VolumePasses &passes) {
   double threshold = std::max(longest_edge, passes.longest_edge() / growth_step);
   std::size_t sorted_at = volume.n_vertices();
   int converged = 0;
+  bool is_lowered = false;
   for (int round = 0; round < max_growth_rounds && !passes.is_stopped(); ++round) {
     const bool is_last_step = threshold <= longest_edge;
+    if (is_lowered)
+      passes.look_everywhere(Pass::split);
     const std::size_t splits = passes.split({threshold, 1e-4, .45});
     passes.swap(.5);
     passes.vertices({is_last_step ? .6 : .5, std::max(longest_edge, threshold), true});
@@ -37,7 +40,8 @@ void grow(Volume &volume, VolumePasses &passes) {
     if (is_last_step &&
         (fraction < growth_is_dry || ++converged >= max_converged_rounds))
       break;
-    if (fraction < step_is_dry)
+    is_lowered = !is_last_step && fraction < step_is_dry;
+    if (is_lowered)
       threshold = std::max(longest_edge, threshold / growth_step);
   }
   renumber(volume);
