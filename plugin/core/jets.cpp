@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace anistar {
 namespace {
 
 /// Rings of neighbours, and the number of points at which no further ring is taken.
-constexpr int max_rings = 3;
-constexpr std::size_t enough_points = 14;
+constexpr int max_rings = 4;
+constexpr std::size_t enough_points = 16;
 /// Points needed for a fit of degree two and three.
-constexpr std::size_t for_quadratic = 5, for_cubic = 12;
+constexpr std::size_t for_quadratic = 5, for_cubic = 10;
+/// Where few points leave the fit undetermined, a square of the height, with which it
+/// is exact on spheres and cylinders, is this much preferred to cubic terms.
+constexpr double cubic_reluctance = .01;
+/// Fits over a tangent plane, each over that of the one before.
+constexpr int max_fits = 4;
+
 /// Facets that turn away from the vertex by more (the cosine) are not fitted: beyond,
 /// the surface is no graph over the tangent plane.
 constexpr double most_turned = .5;
@@ -125,7 +132,7 @@ private:
   [[nodiscard]] Jet fit(Index jet) {
     Jet out;
     out.normal = weighted_normal(jet);
-    for (int round = 0; round < 2; ++round) {
+    for (int round = 0; round < max_fits; ++round) {
       gather(jet, out.normal);
       stamp_[static_cast<std::size_t>(jet)] = none;
       for (Index other : ring_)
@@ -145,21 +152,25 @@ private:
     for (Index other : ring_)
       reach = std::max(reach, (at(other) - at(jet)).norm());
     const bool is_cubic = n >= for_cubic;
-    Eigen::MatrixXd A(static_cast<Eigen::Index>(n), is_cubic ? 9 : 5);
+    Eigen::MatrixXd A(static_cast<Eigen::Index>(n), is_cubic ? 10 : 5);
     Eigen::VectorXd z(static_cast<Eigen::Index>(n));
     for (std::size_t k = 0; k < n; ++k) {
       const Vector<3> y = (at(ring_[k + 1]) - at(jet)) / reach;
-      const double u = y.dot(t), v = y.dot(b), weight = 1 / y.norm();
+      const double u = y.dot(t), v = y.dot(b), w = y.dot(normal), weight = 1 / y.norm();
       const auto row = static_cast<Eigen::Index>(k);
       A.row(row).head(5) << u, v, u * u, u * v, v * v;
       if (is_cubic)
-        A.row(row).tail(4) << u * u * u, u * u * v, u * v * v, v * v * v;
+        A.row(row).tail(5) << w * w, u * u * u, u * u * v, u * v * v, v * v * v;
       A.row(row) *= weight;
-      z[row] = y.dot(normal) * weight;
+      z[row] = w * weight;
     }
+    Eigen::VectorXd scale = A.colwise().norm().cwiseMax(1e-12).cwiseInverse();
+    if (is_cubic)
+      scale.tail(4) *= cubic_reluctance;
+    A = A * scale.asDiagonal();
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
     solver.setThreshold(rank_tolerance);
-    const Eigen::VectorXd c = solver.compute(A).solve(z);
+    const Eigen::VectorXd c = scale.cwiseProduct(solver.compute(A).solve(z));
 
     // the fundamental forms of the graph of the polynomial, at the vertex
     Jet out;
@@ -173,8 +184,8 @@ private:
     Eigen::Matrix<double, 3, 2> tangents;
     tangents << tu, tv;
     const Matrix<2> inverse = first.inverse();
-    out.curvature = as_tensor<3>(Matrix<3>(tangents * inverse * second * inverse *
-                                           tangents.transpose()));
+    out.curvature = as_tensor<3>(
+        Matrix<3>(tangents * inverse * second * inverse * tangents.transpose()));
     return out;
   }
 };

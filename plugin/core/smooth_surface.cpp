@@ -124,8 +124,7 @@ Vector<3> CurvedPiece::normal(const std::array<double, 3> &w) const {
     partial[k] = corners[k] + 1.5 * w[(k + 1) % 3] * w[(k + 2) % 3] * middle;
     for (std::size_t j = 0; j < 3; ++j)
       if (j != k)
-        partial[k] +=
-            6 * w[k] * w[j] * offsets[k][j] + 3 * w[j] * w[j] * offsets[j][k];
+        partial[k] += 6 * w[k] * w[j] * offsets[k][j] + 3 * w[j] * w[j] * offsets[j][k];
   }
   return (partial[1] - partial[0]).cross(partial[2] - partial[0]);
 }
@@ -163,8 +162,8 @@ CurvedPieces::Foot CurvedPieces::project(const Vector<3> &x) const {
     const Vector<3> found = piece.displacement(at.weights);
     const double change = (found - shift).squaredNorm();
     shift = found;
-    if (change <= settled * settled *
-                      (piece.corners[1] - piece.corners[0]).squaredNorm())
+    if (change <=
+        settled * settled * (piece.corners[1] - piece.corners[0]).squaredNorm())
       break;
   }
   const CurvedPiece &piece = pieces_[static_cast<std::size_t>(at.piece)];
@@ -195,7 +194,7 @@ SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
         control_offset(point(b) - point(a), tangents.at(a, b, ridge.curve));
     piece.offsets[1][0] =
         control_offset(point(a) - point(b), tangents.at(b, a, ridge.curve));
-    const Curve &curve = features.curves[static_cast<std::size_t>(ridge.curve)];
+    const SurfaceCurve &curve = features.curves[static_cast<std::size_t>(ridge.curve)];
     ridges[curve.is_given ? curve.tag : untagged].push_back(piece);
   }
   for (std::size_t f = 0; f < geometry.facets.size(); ++f) {
@@ -205,12 +204,12 @@ SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
       for (std::size_t j = 0; j < 3; ++j)
         if (i != j) {
           const Vector<3> chord = point(t[j]) - point(t[i]);
-          const auto ridge = curve_of.find({std::min(t[i], t[j]), std::max(t[i], t[j])});
+          const auto ridge =
+              curve_of.find({std::min(t[i], t[j]), std::max(t[i], t[j])});
           const Jet &jet = jets_.jets[static_cast<std::size_t>(jets_.facet_jets[f][i])];
-          piece.offsets[i][j] =
-              control_offset(chord, ridge != curve_of.end()
-                                        ? tangents.at(t[i], t[j], ridge->second)
-                                        : tangent_along(chord, jet.normal));
+          piece.offsets[i][j] = control_offset(
+              chord, ridge != curve_of.end() ? tangents.at(t[i], t[j], ridge->second)
+                                             : tangent_along(chord, jet.normal));
         }
     surfaces[geometry.facet_tags[f]].push_back(piece);
   }

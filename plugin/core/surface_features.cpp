@@ -1,5 +1,7 @@
 #include "surface_features.h"
 
+#include "box_tree.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -304,7 +306,7 @@ private:
       fit_line(out_.curves[c], points[c]);
   }
 
-  void fit_line(Curve &curve, const std::vector<Index> &points) const {
+  void fit_line(SurfaceCurve &curve, const std::vector<Index> &points) const {
     curve.origin = point(points.front());
     Vector<3> far = curve.origin;
     for (Index v : points) // the farthest point from the first, then from that one

@@ -15,7 +15,7 @@ struct RidgeSegment {
 /// and the curve or patch it lies on.
 struct Features {
   std::vector<Patch> patches;
-  std::vector<Curve> curves;
+  std::vector<SurfaceCurve> curves;
   std::vector<Index> facet_patch;
   std::vector<RidgeSegment> ridges;
   std::vector<Index> dimension, support;

@@ -6,7 +6,7 @@
 
 namespace anistar {
 
-SurfaceShape::SurfaceShape(std::vector<Patch> patches, std::vector<Curve> curves,
+SurfaceShape::SurfaceShape(std::vector<Patch> patches, std::vector<SurfaceCurve> curves,
                            const SurfaceInput &geometry, SurfaceProjection projection)
     : patches_(std::move(patches)), curves_(std::move(curves)),
       projection_(std::move(projection)) {
@@ -14,7 +14,7 @@ SurfaceShape::SurfaceShape(std::vector<Patch> patches, std::vector<Curve> curves
       std::all_of(patches_.begin(), patches_.end(),
                   [](const Patch &patch) { return patch.is_planar; }) &&
       std::all_of(curves_.begin(), curves_.end(),
-                  [](const Curve &curve) { return curve.is_straight; });
+                  [](const SurfaceCurve &curve) { return curve.is_straight; });
   if (!is_flat)
     geometry_ = std::make_shared<const SmoothSurface>(geometry);
 }
@@ -29,7 +29,7 @@ Vector<3> SurfaceShape::on_patch(Index p, const Vector<3> &x) const {
 }
 
 Vector<3> SurfaceShape::on_curve(Index c, const Vector<3> &x) const {
-  const Curve &here = curve(c);
+  const SurfaceCurve &here = curve(c);
   if (here.is_straight)
     return here.origin + here.direction * here.direction.dot(x - here.origin);
   const CurvedPieces *pieces = geometry_->ridge(here.is_given, here.tag);

@@ -33,7 +33,7 @@ struct Patch {
 };
 
 /// A smooth piece of ridge between two corners, or a closed one.
-struct Curve {
+struct SurfaceCurve {
   Index tag = 0;
   bool is_given = false; ///< it has a tag; else an angle or a change of tags made it
   bool is_straight = false;
@@ -50,13 +50,13 @@ class SurfaceShape {
 public:
   /// @param patches, curves those of the mesh
   /// @param geometry gives the shape of the curved ones
-  SurfaceShape(std::vector<Patch> patches, std::vector<Curve> curves,
+  SurfaceShape(std::vector<Patch> patches, std::vector<SurfaceCurve> curves,
                const SurfaceInput &geometry, SurfaceProjection projection);
 
   [[nodiscard]] const Patch &patch(Index p) const {
     return patches_[static_cast<std::size_t>(p)];
   }
-  [[nodiscard]] const Curve &curve(Index c) const {
+  [[nodiscard]] const SurfaceCurve &curve(Index c) const {
     return curves_[static_cast<std::size_t>(c)];
   }
   [[nodiscard]] Vector<3> on_patch(Index p, const Vector<3> &x) const;
@@ -76,7 +76,7 @@ public:
 
 private:
   std::vector<Patch> patches_;
-  std::vector<Curve> curves_;
+  std::vector<SurfaceCurve> curves_;
   std::shared_ptr<const SmoothSurface> geometry_; ///< null when nothing is curved
   SurfaceProjection projection_;
 };
