@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-
-from anistar import RemeshOptions, remesh, validate
 from meshes import cube
 from remesh3d.domains import DOMAINS, METRICS, layer, rotated, turning, uniform
+
+from anistar import RemeshOptions, remesh, validate
 
 
 @pytest.mark.parametrize("metric", METRICS)
