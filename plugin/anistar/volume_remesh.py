@@ -54,6 +54,7 @@ def remesh_volume(
         geometry.edge_tags,
         np.array(options.frozen_tags, dtype=np.int32),
         options.ridge_angle,
+        options.hausdorff_number,
         UNLIMITED if options.max_vertices is None else options.max_vertices,
         np.inf if options.max_seconds is None else options.max_seconds,
         options.seed,

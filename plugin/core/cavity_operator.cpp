@@ -20,7 +20,7 @@ bool CavityOperator::replace(std::span<const Index> cells, Index apex,
     return false;
   if (acceptance.longest > 0 && !keeps_lengths(acceptance.longest))
     return false;
-  if (has_walls_ && (!add_rim() || !keeps_shape(cells)))
+  if (has_walls_ && (!add_rim(acceptance.hausdorff_number) || !keeps_shape(cells)))
     return false;
   if (!match() || (has_walls_ && (!constrain() || !separates_regions())))
     return false;
@@ -117,7 +117,7 @@ void CavityOperator::add_surface(HalfFacet h, bool is_boundary) {
 
 /// The new facets must lie on the side of the old ones, and those of the boundary need
 /// a place where the new cells end.
-bool CavityOperator::add_rim() {
+bool CavityOperator::add_rim(double hausdorff_number) {
   const Triangulation<3> &mesh = volume_.mesh;
   const Vector<3> &x = mesh.vertex(apex_).x;
   for (const SurfaceEdge &edge : surface_) {
@@ -128,6 +128,11 @@ bool CavityOperator::add_rim() {
     if (!(normal.dot(edge.normal) > cosine * normal.norm() * edge.normal.norm()) ||
         patch.is_frozen)
       return false;
+    if (!patch.is_planar && hausdorff_number > 0)
+      for (Index end : edge.ends)
+        if (volume_.surface.deviation(2, edge.patch, mesh.vertex(end).x, x) >
+            hausdorff_number)
+          return false;
     if (edge.is_boundary)
       outers_.push_back({{edge.ends[0], edge.ends[1], none},
                          HalfFacet(),

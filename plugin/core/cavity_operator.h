@@ -17,6 +17,9 @@ struct Acceptance {
   double floor = 0;
   double gain = 1e-4;
   double longest = 0; ///< bound of the lengths at the apex; 0: none
+  /// Bound of the distance of new edges of curved surfaces from them, relative to the
+  /// edge; 0: none.
+  double hausdorff_number = 0;
 
   [[nodiscard]] double threshold(double old_minimum) const {
     return std::min(floor, old_minimum + gain);
@@ -24,8 +27,9 @@ struct Acceptance {
 };
 
 /// Accepts only what is better than before.
-[[nodiscard]] inline Acceptance improvement(double gain = 1e-3) {
-  return {std::numeric_limits<double>::infinity(), gain, 0};
+[[nodiscard]] inline Acceptance improvement(double gain = 1e-3,
+                                            double hausdorff_number = 0) {
+  return {std::numeric_limits<double>::infinity(), gain, 0, hausdorff_number};
 }
 
 class CavityOperator {
@@ -91,7 +95,7 @@ private:
                              const Acceptance &acceptance);
   [[nodiscard]] bool add_outer(HalfFacet h, double threshold);
   void add_surface(HalfFacet h, bool is_boundary);
-  [[nodiscard]] bool add_rim();
+  [[nodiscard]] bool add_rim(double hausdorff_number);
   [[nodiscard]] bool keeps_vertices(std::span<const Index> cells);
   [[nodiscard]] bool keeps_lengths(double longest);
   [[nodiscard]] bool keeps_shape(std::span<const Index> cells) const;

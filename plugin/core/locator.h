@@ -35,6 +35,9 @@ public:
 
   [[nodiscard]] const std::vector<Cell<d>> &cells() const { return cells_; }
   [[nodiscard]] const std::vector<Vector<d>> &points() const { return points_; }
+  [[nodiscard]] const std::vector<Neighbours<d>> &neighbours() const {
+    return neighbours_;
+  }
 
 private:
   std::vector<Vector<d>> points_;

@@ -68,6 +68,14 @@ public:
            : dimension == 1 ? on_curve(lies_on, x)
                             : x;
   }
+  /// Distance of the middle of the edge ab from the feature, relative to its length.
+  [[nodiscard]] double deviation(Index dimension, Index lies_on, const Vector<3> &a,
+                                 const Vector<3> &b) const {
+    if (is_flat(dimension, lies_on))
+      return 0;
+    const Vector<3> middle = .5 * (a + b);
+    return (place(dimension, lies_on, middle) - middle).norm() / (b - a).norm();
+  }
   [[nodiscard]] bool is_flat(Index dimension, Index lies_on) const {
     return dimension == 2   ? patch(lies_on).is_planar
            : dimension == 1 ? curve(lies_on).is_straight

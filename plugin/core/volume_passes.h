@@ -34,10 +34,13 @@ struct VertexRule {
 /// Everything the passes share.
 class VolumePasses {
 public:
-  VolumePasses(Volume &volume, Monitor &monitor, std::uint64_t seed)
-      : volume_(volume), operator_(volume), monitor_(monitor), seed_(seed) {}
+  VolumePasses(Volume &volume, Monitor &monitor, double hausdorff_number,
+               std::uint64_t seed)
+      : volume_(volume), operator_(volume), monitor_(monitor),
+        hausdorff_number_(hausdorff_number), seed_(seed) {}
 
-  /// Splits the longest edge of every cell that is too long; @returns how many.
+  /// Splits the longest edge of every cell that is too long, and edges that stray from
+  /// their curved surface or ridge; @returns how many.
   std::size_t split(const SplitRule &rule);
   /// Edge removals and facet swaps at cells below `quality`, where they improve.
   void swap(double quality);
@@ -58,6 +61,7 @@ private:
   Volume &volume_;
   CavityOperator operator_;
   Monitor &monitor_;
+  double hausdorff_number_; ///< of curved surfaces and ridges, relative to an edge
   std::uint64_t seed_;
   VolumeCounts counts_;
   std::array<std::uint32_t, 3> last_{};
@@ -77,7 +81,13 @@ private:
   [[nodiscard]] bool remove_edge(Index c, Index a, Index b);
   [[nodiscard]] bool is_ring_better(std::size_t apex, double threshold) const;
 
+  [[nodiscard]] bool split_curved(Index c);
+  [[nodiscard]] bool is_off_curve(Index curve, const Vector<3> &a,
+                                  const Vector<3> &b) const;
+
   [[nodiscard]] bool may_collapse(Index v, Index u) const;
+  [[nodiscard]] bool follows_curve(Index v, Index u) const;
+  [[nodiscard]] bool has_ridge(const Cell<3> &cell) const;
   void note_surface_neighbours(Index v);
   [[nodiscard]] bool collapse(Index v, Index u, const Acceptance &acceptance);
   [[nodiscard]] bool collapse_shortest(Index v, const VertexRule &rule);

@@ -53,7 +53,7 @@ void shape(VolumePasses &passes) {
     (void)passes.split({longest_edge, .15, .5});
     passes.swap(.7);
     passes.vertices({.62, longest_edge, sweep + 1 < n_sweeps});
-    passes.repair(.2);
+    passes.repair(.3);
   }
   passes.swap(.7);
 }
@@ -117,7 +117,7 @@ VolumeResult remesh_volume(const VolumeInput &input,
   const Background<3> background(input.surface.points, input.cells, metric);
   Volume volume =
       make_volume(input, metric, background, geometry, std::move(projection));
-  VolumePasses passes(volume, monitor, settings.seed);
+  VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed);
   phases.enter("size");
   grow(volume, passes);
   phases.enter("shape");

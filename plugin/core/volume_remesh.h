@@ -8,6 +8,7 @@
 namespace anistar {
 
 struct VolumeSettings {
+  double hausdorff_number = .1; ///< of an edge, relative to its length
   std::size_t max_vertices = static_cast<std::size_t>(-1);
   double max_seconds = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 0;

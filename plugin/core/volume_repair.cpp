@@ -30,7 +30,8 @@ bool VolumePasses::repair_cell(Index c) {
     if (volume_.feature(v) == 2)
       note_surface_neighbours(v);
     for (Index u : cell)
-      if (u != v && may_collapse(v, u) && collapse(v, u, improvement()))
+      if (u != v && may_collapse(v, u) &&
+          collapse(v, u, improvement(1e-3, hausdorff_number_)))
         return true;
   }
   for (std::size_t i = 0; i < 4; ++i)

@@ -59,8 +59,10 @@ std::size_t VolumePasses::split(const SplitRule &rule) {
         b = w;
       }
     }
-    if (a == none)
+    if (a == none) {
+      done += volume_.is_walled(c) && split_curved(c);
       continue;
+    }
     SplitRule local = rule;
     if (longest > very_long)
       local.closest *= relaxed;
@@ -68,6 +70,37 @@ std::size_t VolumePasses::split(const SplitRule &rule) {
   }
   counts_.splits += done;
   return done;
+}
+
+bool VolumePasses::is_off_curve(Index curve, const Vector<3> &a,
+                                const Vector<3> &b) const {
+  return volume_.surface.deviation(1, curve, a, b) > hausdorff_number_;
+}
+
+/// Splits an edge of a cell that strays from the curved feature it lies on.
+bool VolumePasses::split_curved(Index c) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const Cell<3> cell = mesh.at(c);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Index patch = mesh.constraint(HalfFacet(c, i));
+    if (patch == none)
+      continue;
+    const Facet<3> t = facet_of<3>(cell, i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = t[k], b = t[(k + 1) % 3];
+      const Index ridge = volume_.feature(a) <= 1 && volume_.feature(b) <= 1
+                              ? volume_.ridges.find(a, b)
+                              : none;
+      const double deviation =
+          ridge != none
+              ? volume_.surface.deviation(1, volume_.ridges.at(ridge).curve,
+                                          mesh.vertex(a).x, mesh.vertex(b).x)
+              : volume_.surface.deviation(2, patch, mesh.vertex(a).x, mesh.vertex(b).x);
+      if (deviation > hausdorff_number_ && split_edge(c, a, b, {0, 0, 0}, {1e-4}))
+        return true;
+    }
+  }
+  return false;
 }
 
 Index VolumePasses::new_vertex(const Vector<3> &x, Index dimension, Index lies_on) {

@@ -61,7 +61,7 @@ void add_cells(Volume &volume, const VolumeInput &input,
   const std::size_t n = input.cells.size();
   mesh.cells.assign(input.cells.begin(), input.cells.end());
   mesh.region.assign(input.cell_tags.begin(), input.cell_tags.end());
-  mesh.neighbours = adjacency<3>(input.cells, input.surface.points.size());
+  mesh.neighbours = volume.background.locator().neighbours();
   mesh.constraints.assign(n, {none, none, none, none});
   volume.quality.resize(n);
   volume.walled.assign(n, 0);

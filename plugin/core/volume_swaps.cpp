@@ -77,7 +77,8 @@ bool VolumePasses::remove_edge(Index c, Index a, Index b) {
       continue; // the new facets of the surface must meet at the apex
     if (!is_ring_better(k, worst + swap_gain))
       continue;
-    if (operator_.replace(shell_.all(), shell_.ring[k], {a, b}, improvement(swap_gain)))
+    if (operator_.replace(shell_.all(), shell_.ring[k], {a, b},
+                          improvement(swap_gain, hausdorff_number_)))
       return true;
   }
   return false;

@@ -15,6 +15,9 @@ constexpr double move_floor = .35;
 constexpr double random_below = .4, random_radius = .2;
 /// Height of the regular tetrahedron of unit edges.
 constexpr double unit_height = .816496580927726;
+/// An edge whose square in the metric of one end exceeds this times the bound is not
+/// below the bound in the mean, whatever the other end says within reason.
+constexpr double clearly_longer = 4;
 /// Edges that a re-insertion may make.
 constexpr double longest_reinserted = 1.6;
 
@@ -68,8 +71,21 @@ bool VolumePasses::may_collapse(Index v, Index u) const {
   }
 }
 
+/// Whether the ridge stays near its curve when v goes to its neighbour u.
+bool VolumePasses::follows_curve(Index v, Index u) const {
+  Index beyond = none;
+  volume_.ridges.around(v, [&](Index, Index other) {
+    if (other != u)
+      beyond = other;
+  });
+  return !is_off_curve(volume_.support_of(v), volume_.mesh.vertex(u).x,
+                       volume_.mesh.vertex(beyond).x);
+}
+
 /// @pre star_ is the star of v.
 bool VolumePasses::collapse(Index v, Index u, const Acceptance &acceptance) {
+  if (volume_.feature(v) == 1 && !follows_curve(v, u))
+    return false;
   if (!operator_.replace(star_, u, {v, none}, acceptance))
     return false;
   if (volume_.feature(v) == 1)
@@ -84,15 +100,17 @@ bool VolumePasses::collapse_shortest(Index v, const VertexRule &rule) {
     note_surface_neighbours(v);
   const Vertex<3> &here = mesh.vertex(v);
   Index best = none;
-  double shortest = rule.shortest, longest = 0;
+  double shortest = rule.shortest;
   volume_.open_vertices();
   volume_.mark_vertex(v);
   for (Index c : star_)
     for (Index u : mesh.at(c)) {
       if (!volume_.mark_vertex(u))
         continue;
-      const double l = fast_length(here, mesh.vertex(u));
-      longest = std::max(longest, l);
+      const Vertex<3> &there = mesh.vertex(u);
+      if (quadratic<3>(here.M, Vector<3>(there.x - here.x)) > clearly_longer * shortest)
+        continue;
+      const double l = fast_length(here, there);
       if (l < shortest && may_collapse(v, u)) {
         shortest = l;
         best = u;
@@ -100,11 +118,16 @@ bool VolumePasses::collapse_shortest(Index v, const VertexRule &rule) {
     }
   if (best == none)
     return false;
-  double bound = rule.longest;
+  Acceptance acceptance{rule.collapse_floor, 1e-4, rule.longest, hausdorff_number_};
   if (star_quality() < stuck_quality)
-    bound = std::max(bound, longest);
-  if (!collapse(v, best, {rule.collapse_floor, 1e-4, bound}))
+    for (Index c : star_)
+      for (Index u : mesh.at(c))
+        acceptance.longest =
+            std::max(acceptance.longest, fast_length(here, mesh.vertex(u)));
+  if (!collapse(v, best, acceptance)) {
+    star_of(volume_, v, star_); // the trial has used the marks
     return false;
+  }
   ++counts_.collapses;
   return true;
 }
@@ -201,6 +224,20 @@ void VolumePasses::move(Index v) {
   (void)try_move(v, in_space(random_radius * y), worst, sum);
 }
 
+/// Whether one of the edges of a cell is a ridge: re-insertion could swallow it.
+bool VolumePasses::has_ridge(const Cell<3> &cell) const {
+  std::array<Index, 4> on{};
+  std::size_t n = 0;
+  for (Index v : cell)
+    if (volume_.feature(v) <= 1)
+      on[n++] = v;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (volume_.ridges.find(on[i], on[j]) != none)
+        return true;
+  return false;
+}
+
 /// Takes the cells whose circumball in the metric of v contains v into its cavity, as
 /// far as they can be reached without crossing a constrained facet.
 /// @pre star_ is the star of v, marked.
@@ -218,7 +255,8 @@ void VolumePasses::reinsert(Index v, double floor) {
           (volume_.is_walled(c) && mesh.constraint(h) != none))
         continue;
       const Cell<3> &t = mesh.at(beyond.cell());
-      if (is_in_ball(here.M, mesh.vertex(t[0]).x, mesh.vertex(t[1]).x,
+      if (!has_ridge(t) &&
+          is_in_ball(here.M, mesh.vertex(t[0]).x, mesh.vertex(t[1]).x,
                      mesh.vertex(t[2]).x, mesh.vertex(t[3]).x, here.x)) {
         volume_.mark_cell(beyond.cell());
         star_.push_back(beyond.cell());
@@ -244,7 +282,6 @@ void VolumePasses::vertices(const VertexRule &rule) {
     star_of(volume_, v, star_);
     if (collapse_shortest(v, rule))
       continue;
-    star_of(volume_, v, star_); // the trial has used the marks
     move(v);
     if (rule.reinsert)
       reinsert(v, rule.reinsertion_floor);

@@ -1,9 +1,9 @@
 """3D domains and metrics for the tests of the remesher."""
 
 import numpy as np
+from meshes import cube, two_region_cube
 
 from anistar.mesh import Mesh
-from meshes import cube, two_region_cube
 
 
 def uniform(mesh, h):

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from meshes import cube, square
+from remesh3d.domains import uniform
 
 from anistar import Mesh, RemeshOptions, remesh, validate
 from anistar.metric import MetricError
-from meshes import cube, square
-from remesh3d.domains import uniform
 
 
 def test_a_bound_on_the_vertices_holds_and_is_reported():
