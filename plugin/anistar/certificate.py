@@ -87,8 +87,8 @@ class Certificate:
         """Return JSON builtins: the fractions, counts and extremes, without the arrays.
 
         ``simplex_ok`` and ``star_ok`` are fractions, ``n_exempt`` counts vertices,
-        ``distortion_max``, ``radius_edge_max`` and ``sliverity_min`` are extremes; the pairs are ``[how many, of how
-        many]``.
+        ``distortion_max``, ``radius_edge_max`` and ``sliverity_min`` are extremes; the pairs are
+        ``[how many, of how many]``.
         """
         return {
             "verdict": self.verdict,
