@@ -16,6 +16,7 @@ from .mesh import Mesh
 from .metric import check_metric
 from .options import require
 from .remesh_report import RemeshReport, report_of
+from .volume_remesh import remesh_volume
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
@@ -163,24 +164,26 @@ def remesh(
     require(RemeshOptions, options=options)
     geometry = mesh if geometry is None else geometry
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
-    if mesh.dim != 2:
-        raise ValueError(f"remesh works on 2D meshes; this one has dimension {mesh.dim}")
-    if geometry.dim != 2:
-        raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh 2")
+    if geometry.dim != mesh.dim:
+        raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh {mesh.dim}")
     _check_frozen(options.frozen_tags, geometry)
     scale = _unit_scale(mesh.points)
-    raw = _call_core(mesh, metric, geometry, project, options, scale)
+    call = _call_core if mesh.dim == 2 else remesh_volume
+    raw = call(mesh, metric, geometry, project, options, scale)
     points = raw["points"] / scale
+    kept = geometry if mesh.dim == 2 else mesh
+    ridges = {name: raw[name] for name in ("edges", "edge_tags") if name in raw}
     new = Mesh._trusted(
         points=points,
         cells=raw["cells"],
         cell_tags=raw["cell_tags"],
         facets=raw["facets"],
         facet_tags=raw["facet_tags"],
-        corners=_same_points(geometry.points[geometry.corners], points),
+        corners=_same_points(kept.points[kept.corners], points),
         names={**mesh.names, **geometry.names},
+        **ridges,
     )
-    report = report_of(raw, geometry, new)
+    report = report_of(raw, geometry, new, has_ridges=len(mesh.edges) > 0)
     return Remeshed(new, raw["metric"] * scale**2, report)
 
 

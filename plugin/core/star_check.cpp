@@ -51,14 +51,14 @@ public:
     return std::exchange(changed_, {});
   }
   /// As the certificate sees one cell now.
-  [[nodiscard]] DelaunayTest &test() { return test_; }
+  [[nodiscard]] DelaunayTest<2> &test() { return test_; }
 
 private:
   Workspace &w_;
   Triangulation<2> &mesh_;
   std::uint64_t seed_;
   Relocation relocation_;
-  DelaunayTest test_;
+  DelaunayTest<2> test_;
   std::vector<std::uint32_t> seen_;
   std::uint32_t epoch_ = 0;
   std::vector<Index> changed_;
@@ -154,7 +154,7 @@ std::vector<Index> dependent(const Triangulation<2> &mesh,
 std::vector<Index> failing_cells(const std::vector<std::uint8_t> &bits) {
   std::vector<Index> cells;
   for (std::size_t c = 0; c < bits.size(); ++c)
-    if (bits[c] != all_vertices)
+    if (bits[c] != all_vertices<2>)
       cells.push_back(static_cast<Index>(c));
   return cells;
 }
@@ -163,7 +163,7 @@ void count_certified(const Triangulation<2> &mesh, StarCheck &check) {
   std::vector<bool> ok(mesh.vertices.size(), true);
   std::size_t cells = 0;
   for (std::size_t c = 0; c < check.bits.size(); ++c) {
-    cells += check.bits[c] == all_vertices;
+    cells += check.bits[c] == all_vertices<2>;
     for (std::size_t k = 0; k < 3; ++k)
       if ((check.bits[c] >> k & 1) == 0)
         ok[static_cast<std::size_t>(mesh.cells[c][k])] = false;
@@ -178,7 +178,7 @@ void count_certified(const Triangulation<2> &mesh, StarCheck &check) {
 StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed, int threads,
                       bool mend) {
   const Triangulation<2> &mesh = w.mesh;
-  DelaunayBits found = delaunay_bits(
+  DelaunayBits found = delaunay_bits<2>(
       {mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints}, threads);
   std::vector<Index> failing = failing_cells(found.bits);
   StarCheck check;

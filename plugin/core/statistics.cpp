@@ -3,7 +3,6 @@
 #include "parallel.h"
 
 namespace anistar {
-
 namespace {
 
 /// Sums over some of the cells.
@@ -48,37 +47,26 @@ struct Sums {
   }
 };
 
-} // namespace
-
-Statistics measure(std::span<const Vertex<2>> vertices, std::span<const Cell<2>> cells,
-                   std::span<const Neighbours<2>> neighbours, int threads) {
-  const auto vertex = [&](Index v) -> const Vertex<2> & {
-    return vertices[static_cast<std::size_t>(v)];
-  };
+/// Adds up what add(sums, k) says of k = 0, ..., size - 1.
+template <class Add> Sums summed(std::size_t size, int threads, Add add) {
   // parts of a fixed size, so that the sums do not depend on the number of threads
   constexpr std::size_t grain = 1 << 14;
-  std::vector<Sums> parts((cells.size() + grain - 1) / grain);
+  std::vector<Sums> parts((size + grain - 1) / grain);
   parallel_items(parts.size(), threads, [&] {
     return [&](std::size_t part) {
       Sums sums;
-      for (std::size_t c = part * grain; c < std::min(cells.size(), (part + 1) * grain);
-           ++c) {
-        const Cell<2> &cell = cells[c];
-        sums.add_cell(quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2])));
-        for (std::size_t i = 0; i < 3; ++i) {
-          const HalfFacet other = neighbours[c][i];
-          if (other.exists() && static_cast<std::size_t>(other.cell()) < c)
-            continue; // counted from the other side
-          const auto [a, b] = facet_of<2>(cell, i);
-          sums.add_edge(edge_length(vertex(a), vertex(b)));
-        }
-      }
+      for (std::size_t k = part * grain; k < std::min(size, (part + 1) * grain); ++k)
+        add(sums, k);
       parts[part] = sums;
     };
   });
   Sums all;
   for (const Sums &part : parts)
     all += part;
+  return all;
+}
+
+Statistics statistics_of(const Sums &all, std::size_t n_cells) {
   Statistics out;
   out.n_edges = all.n_edges;
   const double n_edges = static_cast<double>(std::max<std::size_t>(all.n_edges, 1));
@@ -89,9 +77,94 @@ Statistics measure(std::span<const Vertex<2>> vertices, std::span<const Cell<2>>
   out.length_histogram.assign(all.lengths.begin(), all.lengths.end());
   out.quality_min = all.quality_min;
   out.quality_mean =
-      all.quality / static_cast<double>(std::max<std::size_t>(cells.size(), 1));
+      all.quality / static_cast<double>(std::max<std::size_t>(n_cells, 1));
   out.quality_histogram.assign(all.qualities.begin(), all.qualities.end());
   return out;
+}
+
+/// The edges of the cells, each once, as pairs of indices in increasing order.
+template <std::size_t d>
+std::vector<std::array<Index, 2>> edges_of(std::span<const Cell<d>> cells,
+                                           std::size_t n_vertices) {
+  // a counting sort by the lower end, then a sort of every bucket
+  std::vector<std::size_t> start(n_vertices + 1, 0);
+  const auto each = [&](auto visit) {
+    for (const Cell<d> &cell : cells)
+      for (std::size_t i = 0; i <= d; ++i)
+        for (std::size_t j = i + 1; j <= d; ++j)
+          visit(static_cast<std::size_t>(std::min(cell[i], cell[j])),
+                std::max(cell[i], cell[j]));
+  };
+  each([&](std::size_t low, Index) { ++start[low + 1]; });
+  for (std::size_t v = 0; v < n_vertices; ++v)
+    start[v + 1] += start[v];
+  std::vector<Index> high(start.back());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  each([&](std::size_t low, Index other) { high[next[low]++] = other; });
+  std::vector<std::array<Index, 2>> edges;
+  for (std::size_t v = 0; v < n_vertices; ++v) {
+    const auto begin = high.begin() + static_cast<std::ptrdiff_t>(start[v]),
+               end = high.begin() + static_cast<std::ptrdiff_t>(start[v + 1]);
+    std::sort(begin, end);
+    const auto last = std::unique(begin, end);
+    for (auto it = begin; it != last; ++it)
+      edges.push_back({static_cast<Index>(v), *it});
+  }
+  return edges;
+}
+
+/// Quantiles of the logarithm of some values.
+DistortionQuantiles quantiles(std::vector<double> values) {
+  if (values.empty())
+    return {};
+  auto sorted = values.begin(); // what lies before is below all that follows
+  const auto quantile = [&](double q) {
+    const auto k = static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
+    const auto at = values.begin() + k;
+    std::nth_element(sorted, at, values.end());
+    sorted = at;
+    return std::log(*at);
+  };
+  const double p50 = quantile(.5), p90 = quantile(.9), p99 = quantile(.99);
+  return {p50, p90, p99, quantile(1)};
+}
+
+} // namespace
+
+Statistics measure(std::span<const Vertex<2>> vertices, std::span<const Cell<2>> cells,
+                   std::span<const Neighbours<2>> neighbours, int threads) {
+  const auto vertex = [&](Index v) -> const Vertex<2> & {
+    return vertices[static_cast<std::size_t>(v)];
+  };
+  const Sums all = summed(cells.size(), threads, [&](Sums &sums, std::size_t c) {
+    const Cell<2> &cell = cells[c];
+    sums.add_cell(quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2])));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const HalfFacet other = neighbours[c][i];
+      if (other.exists() && static_cast<std::size_t>(other.cell()) < c)
+        continue; // counted from the other side
+      const auto [a, b] = facet_of<2>(cell, i);
+      sums.add_edge(edge_length(vertex(a), vertex(b)));
+    }
+  });
+  return statistics_of(all, cells.size());
+}
+
+Statistics measure(std::span<const Vertex<3>> vertices, std::span<const Cell<3>> cells,
+                   int threads) {
+  const auto vertex = [&](Index v) -> const Vertex<3> & {
+    return vertices[static_cast<std::size_t>(v)];
+  };
+  Sums all = summed(cells.size(), threads, [&](Sums &sums, std::size_t c) {
+    const Cell<3> &cell = cells[c];
+    sums.add_cell(
+        quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2]), vertex(cell[3])));
+  });
+  const auto edges = edges_of<3>(cells, vertices.size());
+  all += summed(edges.size(), threads, [&](Sums &sums, std::size_t e) {
+    sums.add_edge(edge_length(vertex(edges[e][0]), vertex(edges[e][1])));
+  });
+  return statistics_of(all, cells.size());
 }
 
 double distortion(const SymmetricTensor<2> &M, const SymmetricTensor<2> &N) {
@@ -105,11 +178,20 @@ double distortion(const SymmetricTensor<2> &M, const SymmetricTensor<2> &N) {
   return std::sqrt(std::max(large, large / product));
 }
 
+double distortion(const SymmetricTensor<3> &M, const SymmetricTensor<3> &N) {
+  // the largest eigenvalue of N in M; a closed form loses digits of the others only
+  const auto stretch = [](const SymmetricTensor<3> &A, const SymmetricTensor<3> &B) {
+    Eigen::SelfAdjointEigenSolver<Matrix<3>> solver;
+    solver.computeDirect(as_matrix(congruent<3>(lower_factor(A), B)),
+                         Eigen::EigenvaluesOnly);
+    return solver.eigenvalues()[2];
+  };
+  return std::sqrt(std::max({1., stretch(M, N), stretch(N, M)}));
+}
+
 DistortionQuantiles distortion_quantiles(std::span<const Vertex<2>> vertices,
                                          std::span<const Cell<2>> cells, int threads) {
   std::vector<double> values(3 * cells.size());
-  if (values.empty())
-    return {};
   parallel_ranges(cells.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
       for (std::size_t i = 0; i < 3; ++i) {
@@ -118,16 +200,19 @@ DistortionQuantiles distortion_quantiles(std::span<const Vertex<2>> vertices,
                                        vertices[static_cast<std::size_t>(b)].M);
       }
   });
-  auto sorted = values.begin(); // what lies before is below all that follows
-  const auto quantile = [&](double q) {
-    const auto k = static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
-    const auto at = values.begin() + k;
-    std::nth_element(sorted, at, values.end());
-    sorted = at;
-    return std::log(*at);
-  };
-  const double p50 = quantile(.5), p90 = quantile(.9), p99 = quantile(.99);
-  return {p50, p90, p99, quantile(1)};
+  return quantiles(std::move(values));
+}
+
+DistortionQuantiles distortion_quantiles(std::span<const Vertex<3>> vertices,
+                                         std::span<const Cell<3>> cells, int threads) {
+  const auto edges = edges_of<3>(cells, vertices.size());
+  std::vector<double> values(edges.size());
+  parallel_ranges(edges.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e)
+      values[e] = distortion(vertices[static_cast<std::size_t>(edges[e][0])].M,
+                             vertices[static_cast<std::size_t>(edges[e][1])].M);
+  });
+  return quantiles(std::move(values));
 }
 
 } // namespace anistar
