@@ -31,8 +31,8 @@ FLATTEST_PATCH = 1e-12
 """Smallest ratio of the extents squared of a patch; below, its points are on a line."""
 
 BLOCK = 4096
-"""Vertices fitted at once, so that the arrays of a block stay in the cache; a quarter of it
-for each level that a patch was grown."""
+"""Vertices fitted at once, so that the arrays of a block stay in the cache; half of it
+for each level but the first that a patch was grown."""
 
 
 LEAST_FREEDOM = 3
@@ -150,7 +150,7 @@ def fit_patches(
     pending = np.arange(len(rows))
     for smallest_pivot in pivots:
         for level in levels:
-            step = max(BLOCK >> 2 * level, 64)
+            step = max(BLOCK >> max(level - 1, 0), 64)
             for start in range(0, len(pending), step):
                 part = pending[start : start + step]
                 patches = _patches(cloud.first, neighbours, rows[part], level)
