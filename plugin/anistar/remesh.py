@@ -43,7 +43,7 @@ class RemeshOptions:
     frozen_tags : sequence of int
         Facets with these tags are kept as they are.
     ridge_angle : float
-        Degrees; the boundary has a corner where it turns by at least this.
+        Degrees; the boundary has a corner (in 3D: a ridge) where it turns by at least this.
     agreement : bool or "auto"
         Move vertices until the stars of the mesh agree, so that `certify` finds every star
         Delaunay in its own metric. "auto" does so when the metric varies slowly enough from
@@ -51,7 +51,7 @@ class RemeshOptions:
     until_consistent : bool or "pure"
         After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
         star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.
-        "pure" starts from the boundary alone and runs only that algorithm.
+        "pure" starts from the boundary alone and runs only that algorithm. In 2D only.
     consistency : ConsistencyOptions
         Its parameters.
     seed : int
@@ -59,8 +59,8 @@ class RemeshOptions:
     threads : int
         That work on the mesh side by side; the result does not depend on it, to the last bit.
     hausdorff_number : float
-        Distance of a curve from an edge along it, relative to the edge's length; longer edges
-        are split whatever the metric says.
+        Distance of a curve or curved surface from an edge along it, relative to the edge's
+        length; longer edges are split whatever the metric says.
     callback : callable, optional
         ``callback(phase, fraction)`` for progress; raise in it to interrupt.
     """
@@ -139,7 +139,8 @@ def remesh(
     options : RemeshOptions, optional
     geometry : Mesh, optional
         The mesh whose facets are the shape of the domain, `mesh` by default. Loops give the
-        first mesh, so that curved boundaries do not drift.
+        first mesh, so that curved boundaries do not drift. In 3D the facets, ridges and corners
+        are those of `mesh`, and the geometry gives the shape of the curved ones.
     project : callable, optional
         ``project(points, facet_tag)`` moves new points on curves onto the true geometry.
 

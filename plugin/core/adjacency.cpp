@@ -53,7 +53,7 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
       const Entry<d> &one = bucket[static_cast<std::size_t>(p)];
       for (Index q = p + 1; q < start[v + 1]; ++q) {
         const Entry<d> &two = bucket[static_cast<std::size_t>(q)];
-        if (two.rest != one.rest)
+        if (two.rest.front() != one.rest.front() || two.rest.back() != one.rest.back())
           continue;
         HalfFacet &side = side_of(one.half), &other = side_of(two.half);
         if (side.exists() || other.exists())

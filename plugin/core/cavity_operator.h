@@ -20,9 +20,13 @@ struct Acceptance {
   /// Bound of the distance of new edges of curved surfaces from them, relative to the
   /// edge; 0: none.
   double hausdorff_number = 0;
+  /// When positive, this share of the quality of the worst old cell is enough too:
+  /// where the metric is far thinner than the cells, nothing reaches a fixed floor.
+  double share = 0;
 
   [[nodiscard]] double threshold(double old_minimum) const {
-    return std::min(floor, old_minimum + gain);
+    const double least = std::min(floor, old_minimum + gain);
+    return share > 0 ? std::min(least, share * old_minimum) : least;
   }
 };
 

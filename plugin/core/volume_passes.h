@@ -22,6 +22,7 @@ struct SplitRule {
   double longest;     ///< edges above are split
   double floor;       ///< of the quality
   double closest = 0; ///< nearest a new vertex may come to the others around the edge
+  double share = 0;   ///< of the old quality that is enough too (see Acceptance)
 };
 
 struct VertexRule {

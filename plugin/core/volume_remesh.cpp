@@ -26,7 +26,7 @@ void grow(Volume &volume, VolumePasses &passes) {
     const bool is_last_step = threshold <= longest_edge;
     if (is_lowered)
       passes.look_everywhere(Pass::split);
-    const std::size_t splits = passes.split({threshold, 1e-4, .45});
+    const std::size_t splits = passes.split({threshold, 1e-4, .45, .5});
     passes.swap(.5);
     passes.vertices({is_last_step ? .6 : .5, std::max(longest_edge, threshold), true});
     if (static_cast<double>(volume.mesh.vertices.size()) >

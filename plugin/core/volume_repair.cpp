@@ -38,7 +38,7 @@ bool VolumePasses::repair_cell(Index c) {
     for (std::size_t j = i + 1; j < 4; ++j)
       if (fast_length(mesh.vertex(cell[i]), mesh.vertex(cell[j])) >=
               shortest_repaired &&
-          split_edge(c, cell[i], cell[j], {0, 0, 0}, improvement()))
+          split_edge(c, cell[i], cell[j], {0, 0}, improvement()))
         return true;
   return false;
 }

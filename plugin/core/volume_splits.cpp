@@ -66,7 +66,7 @@ std::size_t VolumePasses::split(const SplitRule &rule) {
     SplitRule local = rule;
     if (longest > very_long)
       local.closest *= relaxed;
-    done += split_edge(c, a, b, local, {rule.floor});
+    done += split_edge(c, a, b, local, {rule.floor, 1e-4, 0, 0, rule.share});
   }
   counts_.splits += done;
   return done;
@@ -96,7 +96,7 @@ bool VolumePasses::split_curved(Index c) {
               ? volume_.surface.deviation(1, volume_.ridges.at(ridge).curve,
                                           mesh.vertex(a).x, mesh.vertex(b).x)
               : volume_.surface.deviation(2, patch, mesh.vertex(a).x, mesh.vertex(b).x);
-      if (deviation > hausdorff_number_ && split_edge(c, a, b, {0, 0, 0}, {1e-4}))
+      if (deviation > hausdorff_number_ && split_edge(c, a, b, {0, 0}, {1e-4}))
         return true;
     }
   }

@@ -255,9 +255,9 @@ void VolumePasses::reinsert(Index v, double floor) {
           (volume_.is_walled(c) && mesh.constraint(h) != none))
         continue;
       const Cell<3> &t = mesh.at(beyond.cell());
-      if (!has_ridge(t) &&
-          is_in_ball(here.M, mesh.vertex(t[0]).x, mesh.vertex(t[1]).x,
-                     mesh.vertex(t[2]).x, mesh.vertex(t[3]).x, here.x)) {
+      if (is_in_ball(here.M, mesh.vertex(t[0]).x, mesh.vertex(t[1]).x,
+                     mesh.vertex(t[2]).x, mesh.vertex(t[3]).x, here.x) &&
+          !has_ridge(t)) {
         volume_.mark_cell(beyond.cell());
         star_.push_back(beyond.cell());
       }

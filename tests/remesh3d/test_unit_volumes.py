@@ -58,7 +58,7 @@ def test_ten_passes_do_not_drift():
     mesh = first
     counts = []
     for _ in range(10):
-        done = remesh(mesh, layer(mesh, 0.3, 0.05), geometry=first)
+        done = remesh(mesh, layer(mesh, 0.15, 0.03), geometry=first)
         mesh = done.mesh
         counts.append(mesh.n_points)
     assert validate(mesh, reference=first, tolerance=1e-12) == []
