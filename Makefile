@@ -1,6 +1,6 @@
 # Every target sets up what it needs first; that takes a moment only when something changed.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint types stubs check-stubs format docs sanitize fuzz bench clean
+.PHONY: help setup demo test lint types stubs check-stubs format docs sanitize sanitize-threads fuzz bench clean
 
 PYTHON := .venv/bin/python
 PYTEST_ARGS ?= -n auto --dist loadfile
@@ -58,6 +58,16 @@ sanitize: setup ## Run the tests with the address and undefined-behaviour saniti
 	  UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
 	  LD_PRELOAD="$$(c++ -print-file-name=libasan.so) $$(c++ -print-file-name=libubsan.so)" \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q
+
+# As above, for races. Exceptions are caught in the interpreter, whose mutexes it does not see.
+sanitize-threads: setup ## Run the tests of threads with the thread sanitizer
+	@$(PYTHON) -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
+	  --upgrade --target $(SANITIZED)/threads --config-settings build-dir=$(SANITIZED)/cmake-threads \
+	  --config-settings cmake.build-type=Debug \
+	  --config-settings cmake.define.ANISTAR_SANITIZE_THREADS=ON .
+	@PYTHONPATH=$(SANITIZED)/threads TSAN_OPTIONS=halt_on_error=1 OPENBLAS_NUM_THREADS=1 \
+	  LD_PRELOAD="$$(c++ -print-file-name=libtsan.so)" \
+	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/remesh/test_threads.py
 
 fuzz: setup ## Run the property tests with many more and random examples
 	@$(PYTHON) -m pytest --hypothesis-profile=fuzz $(PYTEST_ARGS)

@@ -71,5 +71,5 @@ def finishing_on(mesh: MeshLike, options: MetricOptions) -> Finishing:
         h_min=low,
         h_max=high,
         a_max=ratio,
-        law=options.gradation_for(d),
+        law=options.growth_law(d),
     )

@@ -13,7 +13,7 @@ from .bounds import bounded
 from .checks import check_tensors
 from .complexity import complexity
 from .mesh import MeshLike, cell_volumes, diameter
-from .normalisation import SMALLEST_FLOOR, check_normalisation
+from .normalisation import SMALLEST_FLOOR, check_target
 
 Array = NDArray[np.float64]
 
@@ -71,7 +71,7 @@ def dwr_metric(
     .. [1] Carpio, Prieto, Bermejo, Anisotropic "goal-oriented" mesh adaptivity for elliptic
        problems, SIAM Journal on Scientific Computing 35, 2013, section 4.
     """
-    check_normalisation(target_complexity, 1.0)
+    check_target("target_complexity", target_complexity)
     if not (np.isfinite(order) and order > 0.0):
         raise ValueError(f"order must be positive, got {order}")
     d = mesh.points.shape[1]

@@ -108,7 +108,7 @@ class MetricOptions:
         factor = self.gradation_factor
         if isinstance(factor, str) and factor != "auto":
             raise ValueError(f"gradation_factor must be a number, None or 'auto', got {factor!r}")
-        self.gradation_for(2)
+        self.growth_law(2)
         _ = self.recovery
 
     @property
@@ -167,11 +167,16 @@ class MetricOptions:
             return self.target_elements / ELEMENTS_PER_COMPLEXITY[dim]
         raise ValueError("give target_complexity or target_elements, got neither")
 
-    def gradation_for(self, dim: int) -> GrowthLaw:
+    def gradation_for(self, dim: int) -> float | None:
+        """Return the gradation factor in dimension `dim`."""
+        if isinstance(self.gradation_factor, str):
+            return DEFAULT_FACTORS[dim]
+        return self.gradation_factor
+
+    def growth_law(self, dim: int) -> GrowthLaw:
         """Return the law of the gradation in dimension `dim`."""
-        factor = self.gradation_factor
         return GrowthLaw(
-            factor=DEFAULT_FACTORS[dim] if isinstance(factor, str) else factor,
+            factor=self.gradation_for(dim),
             model=self.gradation_model,
             max_distortion=self.max_distortion,
         )

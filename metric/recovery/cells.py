@@ -115,16 +115,25 @@ def _slopes(corners: Array) -> tuple[Array, Array]:
 
 def boundary_facets(cells: Index, n_points: int) -> Index:
     """Facets (f, d) that belong to one cell only, their points increasing."""
-    dim = cells.shape[1] - 1
-    columns = [np.concatenate(c) for c in zip(*_faces(_sorted_corners(cells)), strict=True)]
+    dim, faces = cells.shape[1] - 1, _faces(_sorted_corners(cells))
     if float(n_points) ** dim >= 2.0**63:
-        order = np.lexsort(columns[::-1])
-        return _lonely(np.stack(columns, axis=1)[order]).astype(np.int32)
-    key = columns[0].astype(np.int64)
-    for column in columns[1:]:
-        key = key * n_points + column
-    key.sort()
-    key = _lonely(key[:, None])[:, 0]
+        table = np.concatenate([np.stack(face, axis=1) for face in faces])
+        order = np.lexsort(table.T[::-1])
+        return _lonely(table[order]).astype(np.int32)
+    # one number for each facet, made in place: the tables of all facets are what costs here
+    keys = np.empty((len(faces), len(cells)), dtype=np.int64)
+    for key, face in zip(keys, faces, strict=True):
+        key[:] = face[0]
+        for column in face[1:]:
+            key *= n_points
+            key += column
+    flat = keys.reshape(-1)
+    flat.sort()
+    same = flat[1:] == flat[:-1]
+    once = np.ones(len(flat), dtype=bool)
+    once[1:] &= ~same
+    once[:-1] &= ~same
+    key = flat[once]
     digits = []
     for _ in range(dim):
         digits.append(key % n_points)

@@ -30,9 +30,9 @@ LAST_PIVOT = 1e-8
 FLATTEST_PATCH = 1e-12
 """Smallest ratio of the extents squared of a patch; below, its points are on a line."""
 
-BLOCK = 16384
-"""Vertices fitted at once, so that the arrays of a block stay in the cache; a quarter of it
-for each level that a patch was grown."""
+BLOCK = 4096
+"""Vertices fitted at once, so that the arrays of a block stay in the cache; half of it
+for each level but the first that a patch was grown."""
 
 
 LEAST_FREEDOM = 3
@@ -150,7 +150,7 @@ def fit_patches(
     pending = np.arange(len(rows))
     for smallest_pivot in pivots:
         for level in levels:
-            step = max(BLOCK >> 2 * level, 64)
+            step = max(BLOCK >> max(level - 1, 0), 64)
             for start in range(0, len(pending), step):
                 part = pending[start : start + step]
                 patches = _patches(cloud.first, neighbours, rows[part], level)
@@ -217,9 +217,8 @@ def _fit(
     v = cloud.positions[members] - np.repeat(points[rows], counts, axis=0)
     covariance = covariances(v, starts, counts)
     scaling = _inverse_root(covariance)
-    per_member = np.repeat(scaling, counts, axis=0)
-    xi = np.einsum("qij,qj->iq", per_member, v)
-    basis = _basis(xi, pairs, cloud, members, per_member)
+    xi = _scaled(v, scaling, counts)
+    basis = _basis(xi, pairs, cloud, members, scaling, counts)
     weight = _weight(xi, cloud, members)
     if cloud.at_vertices is not None:
         base = cloud.at_vertices[rows]
@@ -254,17 +253,32 @@ def _fit(
     return fits
 
 
+def _scaled(v: Array, scaling: Array, counts: NDArray[np.int32]) -> Array:
+    """Vectors (d, s) in the coordinates of their patches."""
+    d = v.shape[1]
+    xi = np.zeros((d, len(v)))
+    for i in range(d):
+        for j in range(i + 1):
+            entry = np.repeat(scaling[:, i, j], counts)
+            xi[i] += entry * v[:, j]
+            if i != j:
+                xi[j] += entry * v[:, i]
+    return xi
+
+
 def _basis(
     xi: Array,
     pairs: list[tuple[int, int]],
     cloud: Cloud,
     members: NDArray[np.int32],
     scaling: Array,
+    counts: NDArray[np.int32],
 ) -> list[Array]:
     """Basis functions at the samples, such that coefficients are derivatives."""
     basis = [*xi, *(xi[i] * xi[j] * (0.5 if i == j else 1.0) for i, j in pairs)]
     if cloud.spread is not None and pairs:
-        spread = np.matmul(np.matmul(scaling, cloud.spread[members]), scaling)
+        S = np.repeat(scaling, counts, axis=0)
+        spread = np.matmul(np.matmul(S, cloud.spread[members]), S)
         for a, (i, j) in enumerate(pairs):
             basis[len(xi) + a] += spread[:, i, j] * (0.5 if i == j else 1.0)
     if cloud.at_vertices is None:

@@ -17,8 +17,8 @@ MEASURABLE_NOISE = 2e-15
 CLEAR_SIGNAL = 5.0
 """Hessians this many times above the noise need no larger patch."""
 
-LARGEST_GROWTH = 3
-"""Highest level to which patches are grown against noise."""
+LARGEST_GROWTH = {2: 3, 3: 1}
+"""Highest level to which patches are grown against noise, by dimension: some hundred samples."""
 
 
 def is_measurable(setting: Setting, noise: Array) -> bool:
@@ -40,11 +40,12 @@ def grow_against_noise(setting: Setting, fits: Fits, noise: Array) -> None:
        Probability and its Applications 35, 1990.
     """
     active = np.flatnonzero(fits.level >= 0)
-    for _ in range(LARGEST_GROWTH):
+    largest = LARGEST_GROWTH[setting.cut.points.shape[1]]
+    for _ in range(largest):
         threshold = NOISE_MARGIN * fits.gain[:, None] * noise
         norm = hessian_norm(fits.hessian[active], fits.covariance[active])
         is_weak = (norm < CLEAR_SIGNAL * threshold[active]).any(axis=1)
-        active = active[is_weak & (fits.level[active] < LARGEST_GROWTH)]
+        active = active[is_weak & (fits.level[active] < largest)]
         taken = []
         for level in np.unique(fits.level[active]):
             rows = active[fits.level[active] == level]

@@ -14,16 +14,20 @@ ROUNDOFF = 64.0 * float(np.finfo(np.float64).eps)
 """A second difference of values of size |u| over a distance h is uncertain by 4 eps |u| / h**2;
 the rest is for the sums of a fit."""
 
-NOISE_SAMPLE = 20000
+NOISE_SAMPLE = 5000
 """Vertices, evenly taken, from which the noise of a field is estimated."""
 
 SMOOTHEST = 0.1
 """The share of the patches, those with the least residual, that are taken for smooth: what
 they leave unexplained is noise, while elsewhere it may be features."""
 
-NOISE_MARGIN = 4.0
+NOISE_MARGIN = 5.0
 """Noise reaches 2.6 times its root mean square in one of some thousand Hessians, and its
 standard deviation is estimated 10 % too small."""
+
+FEATURE_MARGIN = 3.0
+"""The growth of residuals with the patch is known roughly: what could be features is taken for
+them. Of pure noise, little of the residual grows."""
 
 NOISE_GAIN = 5.0
 """Norm of the Hessian, measured with the covariance of the patch, that noise of standard
@@ -66,7 +70,7 @@ def estimated_noise(points: Array, cloud: Cloud, neighbours: sparse.csr_array, l
     sizes = [np.sqrt(np.linalg.det(fits.covariance[is_known])) for fits in (small, large)]
     growth = np.maximum(sizes[1] / sizes[0], 1.5) ** (6.0 / points.shape[1])
     before, after = small.residual[is_known] ** 2, large.residual[is_known] ** 2
-    features = (after - before) / (growth[:, None] - 1.0)
+    features = FEATURE_MARGIN * (after - before) / (growth[:, None] - 1.0)
     variance = np.maximum(before - np.maximum(features, 0.0), 0.0)
     for k in range(len(noise)):
         is_smooth = after[:, k] <= np.quantile(after[:, k], SMOOTHEST)

@@ -27,8 +27,8 @@ class Certificate:
     """What is Delaunay in a mesh, each simplex tested in the metrics of its vertices.
 
     A simplex is *Delaunay in a metric* when no vertex that it can reach lies strictly inside its
-    circumscribed ellipse in that metric. It reaches the vertices of the cells that the open
-    ellipse meets, walking from cell to cell and never across a boundary or constrained facet.
+    circumscribed ellipsoid in that metric. It reaches the vertices of the cells that the open
+    ellipsoid meets, walking from cell to cell and never across a boundary or constrained facet.
 
     Attributes
     ----------
@@ -40,9 +40,14 @@ class Certificate:
         Largest distortion between the metric of a vertex and that of a neighbour, at least 1.
     radius_edge : (m,) float64
         Circumradius over shortest edge, the largest value that a metric of its vertices gives.
+    sliverity : (m,) float64
+        ``(volume / e**d)**(1 / d)`` with the shortest edge e, the smallest value that a metric of
+        its vertices gives: 0 for a sliver, 0.49 for a regular tetrahedron, 0.66 for a triangle.
     exempt : (n,) bool
         Vertices that fail and may: in the first shell of a corner below 30 degrees, at most 8
-        for each corner.
+        for each corner. In 2D a corner is a vertex between two walls; in 3D an edge between two
+        walls with that dihedral angle, or a vertex at which the walls leave less than the solid
+        angle of a cone with that aperture.
     verdict : str
         One line with `simplex_ok` and `star_ok` by name, and the number of exempt vertices.
     delaunay : (m, d + 1) bool
@@ -65,6 +70,7 @@ class Certificate:
     star_ok: Bool
     distortion: Float
     radius_edge: Float
+    sliverity: Float
     exempt: Bool
     verdict: str
     delaunay: Bool
@@ -81,8 +87,8 @@ class Certificate:
         """Return JSON builtins: the fractions, counts and extremes, without the arrays.
 
         ``simplex_ok`` and ``star_ok`` are fractions, ``n_exempt`` counts vertices,
-        ``distortion_max`` and ``radius_edge_max`` are extremes; the pairs are ``[how many, of how
-        many]``.
+        ``distortion_max``, ``radius_edge_max`` and ``sliverity_min`` are extremes; the pairs are
+        ``[how many, of how many]``.
         """
         return {
             "verdict": self.verdict,
@@ -94,6 +100,7 @@ class Certificate:
             "n_exempt": int(self.exempt.sum()),
             "distortion_max": as_builtin(self.distortion.max()),
             "radius_edge_max": as_builtin(self.radius_edge.max()),
+            "sliverity_min": as_builtin(self.sliverity.min()),
             "stars_without_interfaces": list(self.stars_without_interfaces),
             "restricted_v1": list(self.restricted_v1),
             "restricted_v2": list(self.restricted_v2),
@@ -111,7 +118,7 @@ class SimplexOfStar:
     vertices : tuple of int
         Its points.
     is_delaunay : bool
-        Whether it reaches no vertex strictly inside its circumscribed ellipse.
+        Whether it reaches no vertex strictly inside its circumscribed ellipsoid.
     violator : int or None
         A vertex inside, where there is one.
     centre : tuple of float
@@ -141,7 +148,7 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
     Parameters
     ----------
     mesh : Mesh
-        A 2D mesh; its facets are the walls of the constrained definition.
+        Its facets are the walls of the constrained definition.
     M : (n, d, d) array
         Metric at the points, in 1 / length**2.
     threads : int
@@ -156,7 +163,7 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
     MetricError
         If a tensor is not symmetric positive definite; the point is named.
     ValueError
-        If the mesh is not 2D, or `threads` is below 1.
+        If `threads` is below 1.
 
     Examples
     --------
@@ -165,17 +172,19 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
     >>> anistar.certify(mesh, np.tile([[1.0, 0.5], [0.5, 1.0]], (4, 1, 1))).simplex_ok
     array([False, False])
     """
-    metric = _checked(mesh, M)
+    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     threads = operator.index(threads)
     if threads < 1:
         raise ValueError(f"threads must be at least 1, got {threads}")
-    raw = _core.certify2(mesh.points, mesh.cells, metric, mesh.facets, threads)
+    compiled = _core.certify2 if mesh.dim == 2 else _core.certify3
+    raw = compiled(mesh.points, mesh.cells, metric, mesh.facets, threads)
     bits = raw["delaunay"][:, None] >> np.arange(mesh.dim + 1, dtype=np.uint8)
     flags = {name: raw[name].astype(bool) for name in ("simplex_ok", "star_ok", "exempt")}
     return Certificate(
         **flags,
         distortion=raw["distortion"],
         radius_edge=raw["radius_edge"],
+        sliverity=raw["sliverity"],
         verdict=_verdict(**flags),
         delaunay=(bits & 1).astype(bool),
         stars_without_interfaces=(int(raw["stars_without_interfaces"]), mesh.n_points),
@@ -190,7 +199,6 @@ def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, 
     Parameters
     ----------
     mesh : Mesh
-        A 2D mesh.
     M : (n, d, d) array
         Metric at the points, in 1 / length**2.
     vertex : int
@@ -206,21 +214,14 @@ def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, 
     MetricError
         If a tensor is not symmetric positive definite; the point is named.
     ValueError
-        If the mesh is not 2D, or has no such vertex.
+        If the mesh has no such vertex.
     """
-    metric = _checked(mesh, M)
+    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     vertex = operator.index(vertex)
     if not 0 <= vertex < mesh.n_points:
         raise ValueError(f"vertex must be in [0, {mesh.n_points - 1}], got {vertex}")
     cells = np.flatnonzero((mesh.cells == vertex).any(axis=1))
     return tuple(_explained(mesh, metric[vertex], int(cell)) for cell in cells)
-
-
-def _checked(mesh: Mesh, M: ArrayLike) -> Float:
-    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
-    if mesh.dim != 2:
-        raise ValueError(f"certificates are for 2D meshes; this one has dimension {mesh.dim}")
-    return metric
 
 
 def _verdict(simplex_ok: Bool, star_ok: Bool, exempt: Bool) -> str:
@@ -242,7 +243,8 @@ def _fraction(ok: Bool) -> str:
 
 
 def _explained(mesh: Mesh, metric: Float, cell: int) -> SimplexOfStar:
-    found = _core.delaunay_violator2(mesh.points, mesh.cells, mesh.facets, cell, metric)
+    compiled = _core.delaunay_violator2 if mesh.dim == 2 else _core.delaunay_violator3
+    found = compiled(mesh.points, mesh.cells, mesh.facets, cell, metric)
     corners = mesh.points[mesh.cells[cell]]
     centre = circumcentre(corners, metric)
     return SimplexOfStar(

@@ -16,6 +16,7 @@ from .mesh import Mesh
 from .metric import check_metric
 from .options import require
 from .remesh_report import RemeshReport, report_of
+from .volume_remesh import remesh_volume
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
@@ -42,7 +43,7 @@ class RemeshOptions:
     frozen_tags : sequence of int
         Facets with these tags are kept as they are.
     ridge_angle : float
-        Degrees; the boundary has a corner where it turns by at least this.
+        Degrees; the boundary has a corner (in 3D: a ridge) where it turns by at least this.
     agreement : bool or "auto"
         Move vertices until the stars of the mesh agree, so that `certify` finds every star
         Delaunay in its own metric. "auto" does so when the metric varies slowly enough from
@@ -50,16 +51,16 @@ class RemeshOptions:
     until_consistent : bool or "pure"
         After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
         star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.
-        "pure" starts from the boundary alone and runs only that algorithm.
+        "pure" starts from the boundary alone and runs only that algorithm. In 2D only.
     consistency : ConsistencyOptions
         Its parameters.
     seed : int
         Of the random moves in the agreement phase.
     threads : int
-        For the certificate; the result does not depend on it.
+        That work on the mesh side by side; the result does not depend on it, to the last bit.
     hausdorff_number : float
-        Distance of a curve from an edge along it, relative to the edge's length; longer edges
-        are split whatever the metric says.
+        Distance of a curve or curved surface from an edge along it, relative to the edge's
+        length; longer edges are split whatever the metric says.
     callback : callable, optional
         ``callback(phase, fraction)`` for progress; raise in it to interrupt.
     """
@@ -138,7 +139,8 @@ def remesh(
     options : RemeshOptions, optional
     geometry : Mesh, optional
         The mesh whose facets are the shape of the domain, `mesh` by default. Loops give the
-        first mesh, so that curved boundaries do not drift.
+        first mesh, so that curved boundaries do not drift. In 3D the facets, ridges and corners
+        are those of `mesh`, and the geometry gives the shape of the curved ones.
     project : callable, optional
         ``project(points, facet_tag)`` moves new points on curves onto the true geometry.
 
@@ -163,24 +165,26 @@ def remesh(
     require(RemeshOptions, options=options)
     geometry = mesh if geometry is None else geometry
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
-    if mesh.dim != 2:
-        raise ValueError(f"remesh works on 2D meshes; this one has dimension {mesh.dim}")
-    if geometry.dim != 2:
-        raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh 2")
+    if geometry.dim != mesh.dim:
+        raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh {mesh.dim}")
     _check_frozen(options.frozen_tags, geometry)
     scale = _unit_scale(mesh.points)
-    raw = _call_core(mesh, metric, geometry, project, options, scale)
+    call = _call_core if mesh.dim == 2 else remesh_volume
+    raw = call(mesh, metric, geometry, project, options, scale)
     points = raw["points"] / scale
+    kept = geometry if mesh.dim == 2 else mesh
+    ridges = {name: raw[name] for name in ("edges", "edge_tags") if name in raw}
     new = Mesh._trusted(
         points=points,
         cells=raw["cells"],
         cell_tags=raw["cell_tags"],
         facets=raw["facets"],
         facet_tags=raw["facet_tags"],
-        corners=_same_points(geometry.points[geometry.corners], points),
+        corners=_same_points(kept.points[kept.corners], points),
         names={**mesh.names, **geometry.names},
+        **ridges,
     )
-    report = report_of(raw, geometry, new)
+    report = report_of(raw, geometry, new, has_ridges=len(mesh.edges) > 0)
     return Remeshed(new, raw["metric"] * scale**2, report)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from .errors import MeshingError
 from .mesh import Mesh
-from .topology import cell_volumes, facet_measures, measure_by_tag
+from .topology import cell_volumes, edge_lengths, facet_measures, measure_by_tag
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +57,8 @@ class RemeshReport:
     tags : tuple of TagMeasure
         Measure of every facet and region tag against the geometry.
     counts : dict of str to float
-        Operations made.
+        Operations made; ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
+        legs have equal lengths, and those without a common one.
     seconds : dict of str to float
         Wall time of each phase.
     """
@@ -83,8 +84,12 @@ class RemeshReport:
         return out
 
 
-def report_of(raw: Mapping[str, Any], geometry: Mesh, new: Mesh) -> RemeshReport:
+def report_of(
+    raw: Mapping[str, Any], geometry: Mesh, new: Mesh, has_ridges: bool = False
+) -> RemeshReport:
     """Return the report on what the core returned.
+
+    The ridges of the geometry count only if the mesh that was remeshed had some.
 
     Raises
     ------
@@ -103,16 +108,19 @@ def report_of(raw: Mapping[str, Any], geometry: Mesh, new: Mesh) -> RemeshReport
         simplex_ok=raw["simplex_ok"],
         star_ok=raw["star_ok"],
         distortion=raw["distortion"],
-        tags=tag_measures(geometry, new),
+        tags=tag_measures(geometry, new, has_ridges),
         counts=raw["counts"],
         seconds=raw["seconds"],
     )
 
 
-def tag_measures(geometry: Mesh, new: Mesh) -> tuple[TagMeasure, ...]:
+def tag_measures(geometry: Mesh, new: Mesh, has_ridges: bool = False) -> tuple[TagMeasure, ...]:
     """Compare what every tag carries; a tag that is gone is an error."""
     found = []
-    for dim, kind in ((geometry.dim - 1, "facet"), (geometry.dim, "cell")):
+    kinds: tuple[tuple[int, str], ...] = ((geometry.dim - 1, "facet"), (geometry.dim, "cell"))
+    if geometry.dim == 3 and has_ridges:
+        kinds = ((1, "edge"), *kinds)
+    for dim, kind in kinds:
         before, after = (_measures(mesh, kind) for mesh in (geometry, new))
         lost = sorted(set(before) - set(after))
         if lost:
@@ -124,6 +132,8 @@ def tag_measures(geometry: Mesh, new: Mesh) -> tuple[TagMeasure, ...]:
 
 
 def _measures(mesh: Mesh, kind: str) -> dict[int, float]:
+    if kind == "edge":
+        return measure_by_tag(edge_lengths(mesh.points, mesh.edges), mesh.edge_tags)
     if kind == "facet":
         return measure_by_tag(facet_measures(mesh.points, mesh.facets), mesh.facet_tags)
     return measure_by_tag(cell_volumes(mesh.points, mesh.cells), mesh.cell_tags)

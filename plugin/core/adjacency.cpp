@@ -6,16 +6,25 @@
 
 namespace anistar {
 
+namespace {
+
+/// A half-facet with its vertices but the lowest, in increasing order.
+template <std::size_t d> struct Entry {
+  std::array<Index, d - 1> rest;
+  HalfFacet half;
+};
+
+template <std::size_t d> Facet<d> sorted(Facet<d> facet) {
+  std::sort(facet.begin(), facet.end());
+  return facet;
+}
+
+} // namespace
+
 template <std::size_t d>
 std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
                                      std::size_t n_points) {
   std::vector<Neighbours<d>> neighbours(cells.size());
-  const auto key_of = [&](const HalfFacet &half) {
-    Facet<d> key =
-        facet_of<d>(cells[static_cast<std::size_t>(half.cell())], half.facet());
-    std::sort(key.begin(), key.end());
-    return key;
-  };
   // counting sort of the half-facets by their smallest vertex, then matching in buckets
   std::vector<Index> start(n_points + 1, 0);
   for (const Cell<d> &cell : cells)
@@ -26,31 +35,33 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
     }
   for (std::size_t v = 0; v < n_points; ++v)
     start[v + 1] += start[v];
-  std::vector<HalfFacet> bucket(cells.size() * (d + 1));
+  std::vector<Entry<d>> bucket(cells.size() * (d + 1));
   std::vector<Index> fill(start.begin(), start.end() - 1);
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (std::size_t i = 0; i <= d; ++i) {
-      const Facet<d> facet = facet_of<d>(cells[c], i);
-      const auto v =
-          static_cast<std::size_t>(*std::min_element(facet.begin(), facet.end()));
-      bucket[static_cast<std::size_t>(fill[v]++)] = HalfFacet(static_cast<Index>(c), i);
+      const Facet<d> facet = sorted<d>(facet_of<d>(cells[c], i));
+      Entry<d> &entry =
+          bucket[static_cast<std::size_t>(fill[static_cast<std::size_t>(facet[0])]++)];
+      std::copy(facet.begin() + 1, facet.end(), entry.rest.begin());
+      entry.half = HalfFacet(static_cast<Index>(c), i);
     }
+  const auto side_of = [&](HalfFacet half) -> HalfFacet & {
+    return neighbours[static_cast<std::size_t>(half.cell())][half.facet()];
+  };
   for (std::size_t v = 0; v < n_points; ++v)
     for (Index p = start[v]; p < start[v + 1]; ++p) {
-      const HalfFacet &one = bucket[static_cast<std::size_t>(p)];
-      const Facet<d> key = key_of(one);
+      const Entry<d> &one = bucket[static_cast<std::size_t>(p)];
       for (Index q = p + 1; q < start[v + 1]; ++q) {
-        const HalfFacet &two = bucket[static_cast<std::size_t>(q)];
-        if (key_of(two) != key)
+        const Entry<d> &two = bucket[static_cast<std::size_t>(q)];
+        if (two.rest.front() != one.rest.front() || two.rest.back() != one.rest.back())
           continue;
-        HalfFacet &side = neighbours[static_cast<std::size_t>(one.cell())][one.facet()];
-        HalfFacet &other =
-            neighbours[static_cast<std::size_t>(two.cell())][two.facet()];
+        HalfFacet &side = side_of(one.half), &other = side_of(two.half);
         if (side.exists() || other.exists())
-          throw std::invalid_argument("a facet of cell " + std::to_string(one.cell()) +
+          throw std::invalid_argument("a facet of cell " +
+                                      std::to_string(one.half.cell()) +
                                       " is shared by more than two cells");
-        side = two;
-        other = one;
+        side = two.half;
+        other = one.half;
       }
     }
   return neighbours;

@@ -3,6 +3,7 @@
 
 #include "locator.h"
 #include "measures.h"
+#include "parallel.h"
 
 namespace anistar {
 
@@ -14,11 +15,12 @@ template <std::size_t d> class Background {
 public:
   /// @pre every metric is positive definite.
   Background(std::span<const Vector<d>> points, std::span<const Cell<d>> cells,
-             std::span<const SymmetricTensor<d>> metric)
-      : locator_(points, cells) {
-    logarithm_.reserve(metric.size());
-    for (const SymmetricTensor<d> &M : metric)
-      logarithm_.push_back(log<d>(M));
+             std::span<const SymmetricTensor<d>> metric, int threads = 1)
+      : locator_(points, cells, threads), logarithm_(metric.size()) {
+    parallel_ranges(metric.size(), threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v)
+        logarithm_[v] = log<d>(metric[v]);
+    });
   }
 
   /// @param cell hint for the location in, cell found out.

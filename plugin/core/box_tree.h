@@ -35,7 +35,7 @@ template <std::size_t d> struct Box {
 /// 2k+2, so there are no links to store.
 template <std::size_t d> class BoxTree {
 public:
-  explicit BoxTree(const std::vector<Box<d>> &boxes);
+  explicit BoxTree(const std::vector<Box<d>> &boxes, int threads = 1);
 
   /// Calls visit(item, bound) for boxes nearer to p than the bound, nearest subtree
   /// first; `visit` returns the squared distance beyond which boxes are of no interest.

@@ -103,7 +103,7 @@ void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
   ports_.clear();
   for (std::size_t k = 0; k < outers_.size(); ++k) {
     const Outer &outer = outers_[k];
-    const Index c = k < cells_.size() ? cells_[k] : mesh_.add_cell();
+    const Index c = k < cells_.size() ? cells_[k] : mesh_.add_cell(slots_);
     mesh_.at(c) = outer.cell;
     mesh_.at(c)[outer.facet] = apex;
     mesh_.region[static_cast<std::size_t>(c)] = outer.region;

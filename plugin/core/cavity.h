@@ -24,6 +24,10 @@ template <std::size_t d> class Cavity {
 public:
   explicit Cavity(Triangulation<d> &mesh) : mesh_(mesh) {}
 
+  /// From now on new cells, and what insert_in_cell adds, go to these places.
+  void take_from(Slots *slots) { slots_ = slots; }
+  [[nodiscard]] Slots *slots() const { return slots_; }
+
   void clear();
   void add(Index cell);
   [[nodiscard]] bool contains(Index cell) const {
@@ -75,6 +79,7 @@ private:
   };
 
   Triangulation<d> &mesh_;
+  Slots *slots_ = nullptr;
   std::vector<std::uint32_t> stamp_;
   std::uint32_t epoch_ = 0;
   std::vector<Index> cells_;

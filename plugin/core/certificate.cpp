@@ -6,65 +6,92 @@
 
 namespace anistar {
 
-Index DelaunayTest::violator(Index cell, const SymmetricTensor<2> &M) {
-  const auto vertex = [&](Index v) -> const Vector<2> & {
-    return mesh_.vertices[static_cast<std::size_t>(v)].x;
-  };
-  const auto cell_at = [&](Index c) -> const Cell<2> & {
+template <std::size_t d> void DelaunayTest<d>::begin_walk() {
+  front_.clear();
+  if (++epoch_ != 0)
+    return;
+  std::fill(stamp_.begin(), stamp_.end(), 0);
+  std::fill(known_.begin(), known_.end(), Known{});
+  epoch_ = 1;
+}
+
+template <std::size_t d>
+HalfFacet DelaunayTest<d>::door(Index from, std::size_t i) const {
+  const auto k = static_cast<std::size_t>(from);
+  const HalfFacet beyond = mesh_.neighbours[k][i];
+  const bool is_open = mesh_.constraints[k][i] == none && beyond.exists() &&
+                       stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_;
+  return is_open ? beyond : HalfFacet();
+}
+
+template <std::size_t d>
+void DelaunayTest<d>::enter(HalfFacet door, std::uint8_t depth) {
+  stamp_[static_cast<std::size_t>(door.cell())] = epoch_;
+  front_.push_back({door, depth});
+}
+
+template <std::size_t d>
+Side DelaunayTest<d>::side(const Circumball<d> &ball, Index v) {
+  Known &known = known_[static_cast<std::size_t>(v)];
+  if (known.epoch == epoch_)
+    return Side::outside; // of the simplex, or seen before
+  const Vector<d> &x = mesh_.vertices[static_cast<std::size_t>(v)].x;
+  known = {epoch_, ball.power(x)};
+  const Side found = ball.side(x, known.power);
+  if (found == Side::boundary)
+    known.power = {};
+  return found;
+}
+
+template <std::size_t d>
+bool DelaunayTest<d>::meets(const Circumball<d> &ball, const Facet<d> &facet) const {
+  std::array<const Vector<d> *, d> corners;
+  std::array<Bounded, d> powers;
+  for (std::size_t n = 0; n < d; ++n) {
+    const auto v = static_cast<std::size_t>(facet[n]);
+    corners[n] = &mesh_.vertices[v].x;
+    powers[n] = known_[v].power;
+  }
+  return ball.meets(corners, powers);
+}
+
+template <std::size_t d>
+Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
+  const auto cell_at = [&](Index c) -> const Cell<d> & {
     return mesh_.cells[static_cast<std::size_t>(c)];
   };
-  const Cell<2> &simplex = cell_at(cell);
-  const Vector<2> &a = vertex(simplex[0]), &b = vertex(simplex[1]),
-                  &c = vertex(simplex[2]);
-  if (++epoch_ == 0) {
-    std::fill(stamp_.begin(), stamp_.end(), 0);
-    epoch_ = 1;
+  begin_walk();
+  Simplex<d> simplex;
+  for (std::size_t k = 0; k <= d; ++k) {
+    const auto v = static_cast<std::size_t>(cell_at(cell)[k]);
+    simplex[k] = mesh_.vertices[v].x;
+    known_[v] = {epoch_, {}};
   }
+  const Circumball<d> ball(M, simplex);
   stamp_[static_cast<std::size_t>(cell)] = epoch_;
-  front_.clear();
-  // powers are those of the facet's vertices as seen from the cell that is left
-  const auto cross = [&](Index from, std::size_t i, const Power &first,
-                         const Power &second) {
-    const auto k = static_cast<std::size_t>(from);
-    const HalfFacet beyond = mesh_.neighbours[k][i];
-    if (mesh_.constraints[k][i] == none && beyond.exists() &&
-        stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_)
-      front_.push_back({beyond, second, first});
-  };
-  for (std::size_t i = 0; i < 3; ++i)
-    cross(cell, i, {}, {});
+  for (std::size_t i = 0; i <= d; ++i)
+    if (const HalfFacet beyond = door(cell, i); beyond.exists())
+      enter(beyond, 1);
   for (std::size_t k = 0; k < front_.size(); ++k) {
-    const Front front = front_[k];
-    const Index c0 = front.entry.cell();
-    std::uint32_t &seen = stamp_[static_cast<std::size_t>(c0)];
-    if (seen == epoch_)
-      continue;
-    seen = epoch_;
-    const std::size_t i = front.entry.facet();
-    const Cell<2> &far = cell_at(c0);
-    const Index apex = far[i];
-    const Vector<2> &e = vertex(apex);
-    Power power;
-    if (apex != simplex[0] && apex != simplex[1] && apex != simplex[2]) {
-      power = sphere_power(M, a, b, c, e);
-      if (power.value < -power.error ||
-          (power.value <= power.error &&
-           in_metric_sphere(M, a, b, c, e) == Side::inside))
-        return apex;
-    }
-    // facet i is (p, q); the other two are (q, e) and (e, p)
-    const Vector<2> &p = vertex(far[(i + 1) % 3]), &q = vertex(far[(i + 2) % 3]);
-    if (segment_meets_sphere(M, a, b, c, q, e, front.second, power))
-      cross(c0, (i + 1) % 3, front.second, power);
-    if (segment_meets_sphere(M, a, b, c, e, p, power, front.first))
-      cross(c0, (i + 2) % 3, power, front.first);
+    const auto [entry, depth] = front_[k];
+    reach_ = std::max(reach_, depth);
+    const auto deeper = static_cast<std::uint8_t>(std::min(depth + 1, 255));
+    const Cell<d> &far = cell_at(entry.cell());
+    const Index apex = far[entry.facet()];
+    if (side(ball, apex) == Side::inside)
+      return apex;
+    for (std::size_t i = 0; i <= d; ++i)
+      if (const HalfFacet beyond = door(entry.cell(), i);
+          beyond.exists() && meets(ball, facet_of<d>(far, i)))
+        enter(beyond, deeper);
   }
   return none;
 }
 
-std::uint8_t DelaunayTest::bits(Index cell) {
+template <std::size_t d> std::uint8_t DelaunayTest<d>::bits(Index cell) {
   unsigned found = 0;
-  for (unsigned k = 0; k < 3; ++k) {
+  reach_ = 0;
+  for (unsigned k = 0; k <= d; ++k) {
     const Index v = mesh_.cells[static_cast<std::size_t>(cell)][k];
     if (violator(cell, mesh_.vertices[static_cast<std::size_t>(v)].M) == none)
       found |= 1u << k;
@@ -72,14 +99,23 @@ std::uint8_t DelaunayTest::bits(Index cell) {
   return static_cast<std::uint8_t>(found);
 }
 
-std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<2> mesh, int threads) {
-  std::vector<std::uint8_t> bits(mesh.cells.size(), 0);
-  parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end) {
-    DelaunayTest test(mesh);
-    for (std::size_t c = begin; c < end; ++c)
-      bits[c] = test.bits(static_cast<Index>(c));
+template <std::size_t d>
+DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads) {
+  const std::size_t n = mesh.cells.size();
+  DelaunayBits found{std::vector<std::uint8_t>(n, 0), std::vector<std::uint8_t>(n, 0)};
+  parallel_ranges(n, threads, [&](std::size_t begin, std::size_t end) {
+    DelaunayTest<d> test(mesh);
+    for (std::size_t c = begin; c < end; ++c) {
+      found.bits[c] = test.bits(static_cast<Index>(c));
+      found.reach[c] = test.reach();
+    }
   });
-  return bits;
+  return found;
 }
+
+template class DelaunayTest<2>;
+template class DelaunayTest<3>;
+template DelaunayBits delaunay_bits(CertifiedMesh<2>, int);
+template DelaunayBits delaunay_bits(CertifiedMesh<3>, int);
 
 } // namespace anistar

@@ -9,6 +9,7 @@
 // RR-7712 v2, section 3).
 
 #include "adjacency.h"
+#include "circumball.h"
 #include "measures.h"
 
 #include <array>
@@ -19,7 +20,8 @@
 namespace anistar {
 
 /// The bits of a cell that is Delaunay in the metrics of all its vertices.
-inline constexpr std::uint8_t all_vertices = 7;
+template <std::size_t d>
+inline constexpr std::uint8_t all_vertices = (1u << (d + 1)) - 1;
 
 /// A mesh as the certificate sees it.
 template <std::size_t d> struct CertifiedMesh {
@@ -31,34 +33,53 @@ template <std::size_t d> struct CertifiedMesh {
 };
 
 /// Decides for one simplex and metric after another; one object to a thread.
-class DelaunayTest {
+template <std::size_t d> class DelaunayTest {
 public:
-  explicit DelaunayTest(CertifiedMesh<2> mesh)
-      : mesh_(mesh), stamp_(mesh.cells.size(), 0) {}
+  explicit DelaunayTest(CertifiedMesh<d> mesh)
+      : mesh_(mesh), stamp_(mesh.cells.size(), 0), known_(mesh.vertices.size()) {}
 
   /// The first vertex found inside the M-circumball of `cell` that it can reach, `none`
   /// when it is Delaunay.
-  [[nodiscard]] Index violator(Index cell, const SymmetricTensor<2> &M);
+  [[nodiscard]] Index violator(Index cell, const SymmetricTensor<d> &M);
 
   /// Bit k: the cell is Delaunay in the metric of its vertex k.
   [[nodiscard]] std::uint8_t bits(Index cell);
+  /// How many cells away the last answer of bits() looked.
+  [[nodiscard]] std::uint8_t reach() const { return reach_; }
 
 private:
-  CertifiedMesh<2> mesh_;
-  std::vector<std::uint32_t> stamp_;
+  /// The power of a vertex in the ball of this epoch.
+  struct Known {
+    std::uint32_t epoch = 0;
+    Bounded power;
+  };
+  CertifiedMesh<d> mesh_;
+  std::vector<std::uint32_t> stamp_; ///< per cell, the epoch of its last visit
+  std::vector<Known> known_;         ///< per vertex
   std::uint32_t epoch_ = 0;
-
-  /// A facet that meets the open ball, as seen from its far cell, and the powers of its
-  /// vertices.
+  /// A facet that meets the open ball, from beyond.
   struct Front {
     HalfFacet entry;
-    Power first, second;
+    std::uint8_t depth; ///< in cells
   };
   std::vector<Front> front_;
+  std::uint8_t reach_ = 0;
+
+  void begin_walk();
+  /// The far side of a facet that is no wall, if the walk has not been there.
+  [[nodiscard]] HalfFacet door(Index from, std::size_t i) const;
+  void enter(HalfFacet door, std::uint8_t depth);
+  [[nodiscard]] Side side(const Circumball<d> &ball, Index v);
+  [[nodiscard]] bool meets(const Circumball<d> &ball, const Facet<d> &facet) const;
 };
 
-/// Bit k of result[c]: cell c is Delaunay in the metric of its vertex k.
-[[nodiscard]] std::vector<std::uint8_t> delaunay_bits(CertifiedMesh<2> mesh,
-                                                      int threads);
+/// Bit k of bits[c]: cell c is Delaunay in the metric of its vertex k. The answer
+/// looked reach[c] cells away, 255 for that or more: it holds as long as these do not
+/// change.
+struct DelaunayBits {
+  std::vector<std::uint8_t> bits, reach;
+};
+template <std::size_t d>
+[[nodiscard]] DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads);
 
 } // namespace anistar

@@ -2,144 +2,125 @@
 
 #include "locator.h"
 #include "parallel.h"
+#include "sharp_corners.h"
+#include "statistics.h"
 
-#include <map>
-#include <numbers>
 #include <optional>
-#include <set>
 
 namespace anistar {
 namespace {
 
-/// Corners sharper than this may stay without a certificate, in this many vertices of
-/// their first shell.
-constexpr double sharp_corner = std::numbers::pi / 6;
-constexpr int max_exempt = 8;
-
-class Certifier {
+template <std::size_t d> class Certifier {
 public:
-  Certifier(std::span<const Vertex<2>> vertices, std::span<const Cell<2>> cells,
-            std::span<const Facet<2>> facets, int threads)
+  Certifier(std::span<const Vertex<d>> vertices, std::span<const Cell<d>> cells,
+            std::span<const Facet<d>> facets, int threads)
       : vertices_(vertices), cells_(cells), threads_(threads),
-        neighbours_(adjacency<2>(cells, vertices.size())),
-        walls_(walls(cells, facets, vertices.size())) {}
+        neighbours_(adjacency<d>(cells, vertices.size())),
+        walls_(walls<d>(cells, facets, vertices.size())) {}
 
-  CertificateResult run() {
+  CertificateResult run() const {
     CertificateResult out;
-    out.delaunay = delaunay_bits({vertices_, cells_, neighbours_, walls_}, threads_);
+    out.delaunay = delaunay_bits<d>(mesh(walls_), threads_).bits;
     out.star_ok = stars(out.delaunay);
     out.simplex_ok.resize(cells_.size());
     for (std::size_t c = 0; c < cells_.size(); ++c)
-      out.simplex_ok[c] = out.delaunay[c] == all_vertices;
+      out.simplex_ok[c] = out.delaunay[c] == all_vertices<d>;
     measure_shapes(out);
-    find_exempt(out);
+    measure_distortion(out);
+    out.exempt = exempt_vertices<d>(mesh(walls_), out.star_ok);
     out.stars_without_interfaces = without_interfaces(out.star_ok);
     count_restricted(out);
     return out;
   }
 
 private:
-  std::span<const Vertex<2>> vertices_;
-  std::span<const Cell<2>> cells_;
-  int threads_;
-  std::vector<Neighbours<2>> neighbours_;
-  std::vector<std::array<Index, 3>> walls_;
-  std::map<Index, int> exempt_at_; ///< vertices exempt at each corner so far
+  using Walls = std::vector<std::array<Index, d + 1>>;
 
-  [[nodiscard]] const Vertex<2> &vertex(Index v) const {
+  std::span<const Vertex<d>> vertices_;
+  std::span<const Cell<d>> cells_;
+  int threads_;
+  std::vector<Neighbours<d>> neighbours_;
+  Walls walls_;
+
+  [[nodiscard]] const Vertex<d> &vertex(Index v) const {
     return vertices_[static_cast<std::size_t>(v)];
   }
-  [[nodiscard]] bool is_wall(Index c, std::size_t i) const {
-    return walls_[static_cast<std::size_t>(c)][i] != none;
+  [[nodiscard]] Simplex<d> simplex(std::size_t c) const {
+    Simplex<d> s;
+    for (std::size_t k = 0; k <= d; ++k)
+      s[k] = vertex(cells_[c][k]).x;
+    return s;
+  }
+  [[nodiscard]] CertifiedMesh<d> mesh(const Walls &constraints) const {
+    return {vertices_, cells_, neighbours_, constraints};
   }
 
   [[nodiscard]] std::vector<std::uint8_t>
   stars(const std::vector<std::uint8_t> &bits) const {
     std::vector<std::uint8_t> ok(vertices_.size(), 1);
     for (std::size_t c = 0; c < cells_.size(); ++c)
-      for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t k = 0; k <= d; ++k)
         if ((bits[c] >> k & 1) == 0)
           ok[static_cast<std::size_t>(cells_[c][k])] = 0;
     return ok;
   }
 
   void measure_shapes(CertificateResult &out) const {
-    out.distortion.assign(vertices_.size(), 1);
     out.radius_edge.assign(cells_.size(), 0);
-    for (std::size_t c = 0; c < cells_.size(); ++c) {
-      const Cell<2> &cell = cells_[c];
-      const Vector<2> &x0 = vertex(cell[0]).x, &x1 = vertex(cell[1]).x,
-                      &x2 = vertex(cell[2]).x;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const SymmetricTensor<2> &M = vertex(cell[k]).M;
-        const double shortest =
-            std::min({quadratic<2>(M, x1 - x0), quadratic<2>(M, x2 - x1),
-                      quadratic<2>(M, x0 - x2)});
-        out.radius_edge[c] =
-            std::max(out.radius_edge[c],
-                     circumcircle(M, x0, x1, x2).radius / std::sqrt(shortest));
-        const Index a = cell[k], b = cell[(k + 1) % 3];
-        const double gamma = anistar::distortion(vertex(a).M, vertex(b).M);
-        for (Index v : {a, b}) {
-          double &worst = out.distortion[static_cast<std::size_t>(v)];
-          worst = std::max(worst, gamma);
-        }
-      }
+    out.sliverity.assign(cells_.size(), 0);
+    parallel_ranges(cells_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c)
+        measure_shape(c, out.radius_edge[c], out.sliverity[c]);
+    });
+  }
+
+  void measure_shape(std::size_t c, double &radius_edge, double &sliver) const {
+    const Simplex<d> s = simplex(c);
+    const double volume = anistar::volume<d>(s);
+    for (Index v : cells_[c]) {
+      const double shortest = shortest_length<d>(vertex(v).M, s);
+      const double ratio = circumsphere<d>(vertex(v).M, s).radius / shortest;
+      const double thinness = sliverity<d>(volume / vertex(v).weight, shortest);
+      radius_edge = std::max(radius_edge, ratio);
+      sliver = v == cells_[c][0] ? thinness : std::min(sliver, thinness);
     }
   }
 
-  /// Walks around every corner of a wall; in sectors below the sharp angle the failing
-  /// vertices of the first shell are exempt.
-  void find_exempt(CertificateResult &out) {
-    out.exempt.assign(vertices_.size(), 0);
-    for (std::size_t c = 0; c < cells_.size(); ++c)
-      for (std::size_t k = 0; k < 3; ++k)
-        if (is_wall(static_cast<Index>(c), (k + 2) % 3)) // a sector begins here
-          exempt_sector(static_cast<Index>(c), k, out);
+  void measure_distortion(CertificateResult &out) const {
+    const auto edges = edges_of_cells();
+    std::vector<double> gamma(edges.size());
+    parallel_ranges(edges.size(), threads_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t e = begin; e < end; ++e)
+        gamma[e] = anistar::distortion(vertex(edges[e][0]).M, vertex(edges[e][1]).M);
+    });
+    out.distortion.assign(vertices_.size(), 1);
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      for (Index v : edges[e]) {
+        double &worst = out.distortion[static_cast<std::size_t>(v)];
+        worst = std::max(worst, gamma[e]);
+      }
   }
 
-  void exempt_sector(Index first, std::size_t local, CertificateResult &out) {
-    const Index apex = cells_[static_cast<std::size_t>(first)][local];
-    std::vector<Index> shell{apex};
-    double angle = 0;
-    Index c = first;
-    std::size_t k = local;
-    for (std::size_t n = 0; n <= cells_.size(); ++n) {
-      const Cell<2> &cell = cells_[static_cast<std::size_t>(c)];
-      const Vector<2> u = vertex(cell[(k + 1) % 3]).x - vertex(apex).x;
-      const Vector<2> v = vertex(cell[(k + 2) % 3]).x - vertex(apex).x;
-      angle += std::atan2(cross(u, v), u.dot(v));
-      shell.push_back(cell[(k + 1) % 3]);
-      if (angle >= sharp_corner)
-        return;
-      if (is_wall(c, (k + 1) % 3)) {
-        shell.push_back(cell[(k + 2) % 3]);
-        break;
-      }
-      const HalfFacet next = neighbours_[static_cast<std::size_t>(c)][(k + 1) % 3];
-      if (!next.exists())
-        return;
-      c = next.cell();
-      const Cell<2> &beyond = cells_[static_cast<std::size_t>(c)];
-      k = static_cast<std::size_t>(std::find(beyond.begin(), beyond.end(), apex) -
-                                   beyond.begin());
-    }
-    int &n_exempt = exempt_at_[apex];
-    for (Index v : shell)
-      if (out.star_ok[static_cast<std::size_t>(v)] == 0 &&
-          out.exempt[static_cast<std::size_t>(v)] == 0 && n_exempt < max_exempt) {
-        out.exempt[static_cast<std::size_t>(v)] = 1;
-        ++n_exempt;
-      }
+  /// Every edge once.
+  [[nodiscard]] std::vector<std::array<Index, 2>> edges_of_cells() const {
+    std::vector<std::array<Index, 2>> edges;
+    edges.reserve(cells_.size() * d * (d + 1) / 2);
+    for (const Cell<d> &cell : cells_)
+      for (std::size_t i = 0; i < d; ++i)
+        for (std::size_t j = i + 1; j <= d; ++j)
+          edges.push_back({std::min(cell[i], cell[j]), std::max(cell[i], cell[j])});
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
   }
 
   [[nodiscard]] std::size_t
   without_interfaces(const std::vector<std::uint8_t> &star_ok) const {
-    std::vector<std::array<Index, 3>> boundary = walls_;
+    Walls boundary = walls_;
     bool has_interface = false;
     for (std::size_t c = 0; c < cells_.size(); ++c)
-      for (std::size_t i = 0; i < 3; ++i)
-        if (is_wall(static_cast<Index>(c), i) && neighbours_[c][i].exists()) {
+      for (std::size_t i = 0; i <= d; ++i)
+        if (walls_[c][i] != none && neighbours_[c][i].exists()) {
           boundary[c][i] = none;
           has_interface = true;
         }
@@ -148,49 +129,48 @@ private:
     };
     if (!has_interface)
       return count(star_ok);
-    return count(
-        stars(delaunay_bits({vertices_, cells_, neighbours_, boundary}, threads_)));
+    return count(stars(delaunay_bits<d>(mesh(boundary), threads_).bits));
   }
 
   void count_restricted(CertificateResult &out) const {
-    std::optional<Locator<2>> locator; // few centres are not found by a short walk
-    const auto is_inside = [&](const Vector<2> &x, Index start) {
+    std::optional<Locator<d>> locator; // few centres are not found by a short walk
+    const auto is_inside = [&](const Vector<d> &x, Index start) {
       const Index found = walk(x, start);
       if (found != none)
         return true;
       if (!locator) {
-        std::vector<Vector<2>> points;
-        for (const Vertex<2> &v : vertices_)
+        std::vector<Vector<d>> points;
+        for (const Vertex<d> &v : vertices_)
           points.push_back(v.x);
         locator.emplace(points, cells_);
       }
       return locator->locate(x, none).distance == 0;
     };
     for (std::size_t c = 0; c < cells_.size(); ++c) {
-      const Cell<2> &cell = cells_[c];
+      const Cell<d> &cell = cells_[c];
       std::uint8_t counts = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-        if (is_inside(circumcircle(vertex(cell[k]).M, vertex(cell[0]).x,
-                                   vertex(cell[1]).x, vertex(cell[2]).x)
-                          .centre,
+      for (std::size_t k = 0; k <= d; ++k)
+        if (is_inside(circumsphere<d>(vertex(cell[k]).M, simplex(c)).centre,
                       static_cast<Index>(c)))
           counts = static_cast<std::uint8_t>(counts | 1u << k);
-      const bool in_all = counts == all_vertices && out.delaunay[c] == all_vertices;
+      const bool in_all =
+          counts == all_vertices<d> && out.delaunay[c] == all_vertices<d>;
       out.restricted_v2 += counts != 0;
       out.restricted_v2_ok += in_all;
-      out.restricted_v1 += counts == all_vertices;
+      out.restricted_v1 += counts == all_vertices<d>;
       out.restricted_v1_ok += in_all;
     }
   }
 
-  [[nodiscard]] Index walk(const Vector<2> &x, Index start) const {
+  [[nodiscard]] Index walk(const Vector<d> &x, Index start) const {
     Index c = start;
     for (int step = 0; step < 32; ++step) {
       HalfFacet out;
       bool crossed = false;
-      for (std::size_t i = 0; i < 3 && !crossed; ++i) {
-        const auto [a, b] = facet_of<2>(cells_[static_cast<std::size_t>(c)], i);
-        if (orientation(vertex(a).x, vertex(b).x, x) == Orientation::negative) {
+      for (std::size_t i = 0; i <= d && !crossed; ++i) {
+        Simplex<d> replaced = simplex(static_cast<std::size_t>(c));
+        replaced[i] = x;
+        if (orientation<d>(replaced) == Orientation::negative) {
           out = neighbours_[static_cast<std::size_t>(c)][i];
           crossed = true;
         }
@@ -207,31 +187,46 @@ private:
 
 } // namespace
 
-std::vector<std::array<Index, 3>> walls(std::span<const Cell<2>> cells,
-                                        std::span<const Facet<2>> facets,
-                                        std::size_t n_points) {
+template <std::size_t d>
+std::vector<std::array<Index, d + 1>> walls(std::span<const Cell<d>> cells,
+                                            std::span<const Facet<d>> facets,
+                                            std::size_t n_points) {
   std::vector<bool> on_facet(n_points, false);
-  std::set<std::pair<Index, Index>> known;
-  for (const Facet<2> &f : facets) {
-    known.insert(std::minmax(f[0], f[1]));
-    on_facet[static_cast<std::size_t>(f[0])] = true;
-    on_facet[static_cast<std::size_t>(f[1])] = true;
+  std::vector<Facet<d>> known(facets.begin(), facets.end());
+  for (Facet<d> &facet : known) {
+    std::sort(facet.begin(), facet.end());
+    for (Index v : facet)
+      on_facet[static_cast<std::size_t>(v)] = true;
   }
-  std::vector<std::array<Index, 3>> out(cells.size(), {none, none, none});
+  std::sort(known.begin(), known.end());
+  std::vector<std::array<Index, d + 1>> out(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [a, b] = facet_of<2>(cells[c], i);
-      if (on_facet[static_cast<std::size_t>(a)] &&
-          on_facet[static_cast<std::size_t>(b)] && known.contains(std::minmax(a, b)))
-        out[c][i] = 0;
+    for (std::size_t i = 0; i <= d; ++i) {
+      Facet<d> facet = facet_of<d>(cells[c], i);
+      std::sort(facet.begin(), facet.end());
+      const bool may_be = std::all_of(facet.begin(), facet.end(), [&](Index v) {
+        return on_facet[static_cast<std::size_t>(v)];
+      });
+      out[c][i] =
+          may_be && std::binary_search(known.begin(), known.end(), facet) ? 0 : none;
     }
   return out;
 }
 
-CertificateResult certify(std::span<const Vertex<2>> vertices,
-                          std::span<const Cell<2>> cells,
-                          std::span<const Facet<2>> facets, int threads) {
-  return Certifier(vertices, cells, facets, threads).run();
+template <std::size_t d>
+CertificateResult certify(std::span<const Vertex<d>> vertices,
+                          std::span<const Cell<d>> cells,
+                          std::span<const Facet<d>> facets, int threads) {
+  return Certifier<d>(vertices, cells, facets, threads).run();
 }
+
+template std::vector<std::array<Index, 3>>
+    walls(std::span<const Cell<2>>, std::span<const Facet<2>>, std::size_t);
+template std::vector<std::array<Index, 4>>
+    walls(std::span<const Cell<3>>, std::span<const Facet<3>>, std::size_t);
+template CertificateResult certify(std::span<const Vertex<2>>, std::span<const Cell<2>>,
+                                   std::span<const Facet<2>>, int);
+template CertificateResult certify(std::span<const Vertex<3>>, std::span<const Cell<3>>,
+                                   std::span<const Facet<3>>, int);
 
 } // namespace anistar

@@ -2,7 +2,6 @@
 // The certificate of a mesh for the metric at its vertices.
 
 #include "certificate.h"
-#include "statistics.h"
 
 namespace anistar {
 
@@ -13,6 +12,7 @@ struct CertificateResult {
   std::vector<std::uint8_t> star_ok;
   std::vector<double> distortion;  ///< largest gamma(M_v, M_w) over the edges vw at v
   std::vector<double> radius_edge; ///< largest r / e over the metrics of its vertices
+  std::vector<double> sliverity;   ///< smallest (Vol / e^d)^(1/d) over the same
   std::vector<std::uint8_t> exempt;
   /// Stars that pass also when the walk crosses interfaces (not the boundary).
   std::size_t stars_without_interfaces = 0;
@@ -25,13 +25,15 @@ struct CertificateResult {
 
 /// @param facets boundary and constrained facets of the mesh, in any orientation.
 /// @throws std::invalid_argument when three cells share a facet.
-[[nodiscard]] CertificateResult certify(std::span<const Vertex<2>> vertices,
-                                        std::span<const Cell<2>> cells,
-                                        std::span<const Facet<2>> facets, int threads);
+template <std::size_t d>
+[[nodiscard]] CertificateResult certify(std::span<const Vertex<d>> vertices,
+                                        std::span<const Cell<d>> cells,
+                                        std::span<const Facet<d>> facets, int threads);
 
 /// For every facet of every cell 0 when it is one of `facets`, else `none`.
-[[nodiscard]] std::vector<std::array<Index, 3>> walls(std::span<const Cell<2>> cells,
-                                                      std::span<const Facet<2>> facets,
-                                                      std::size_t n_points);
+template <std::size_t d>
+[[nodiscard]] std::vector<std::array<Index, d + 1>>
+walls(std::span<const Cell<d>> cells, std::span<const Facet<d>> facets,
+      std::size_t n_points);
 
 } // namespace anistar

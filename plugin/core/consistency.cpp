@@ -23,16 +23,6 @@ constexpr double shortest_split = .8;
 
 enum class Rule { none, size, radius_edge, sliver, inconsistency };
 
-double shortest_edge(const SymmetricTensor<2> &M, const Simplex<2> &s) {
-  return std::sqrt(std::min({quadratic<2>(M, s[1] - s[0]), quadratic<2>(M, s[2] - s[1]),
-                             quadratic<2>(M, s[0] - s[2])}));
-}
-
-/// (Vol / e^d)^(1/d), the sliverity ratio of section 3.2.
-template <std::size_t d> double sliverity(double volume, double shortest) {
-  return std::pow(volume, 1. / d) / shortest;
-}
-
 /// A bad cell, the rule that it breaks and the vertex in whose star it is bad.
 struct BadCell {
   Index cell;
@@ -97,7 +87,7 @@ private:
     const Cell<2> &cell = mesh_.at(c);
     const Simplex<2> s = mesh_.simplex(c);
     BadCell out{c, cell, Rule::none, none};
-    if (bits == all_vertices && !everywhere_)
+    if (bits == all_vertices<2> && !everywhere_)
       return out;
     const auto worsen = [&](Rule rule, Index star) {
       if (out.rule == Rule::none || rule < out.rule) {
@@ -110,7 +100,7 @@ private:
         continue; // not in this star, but in another one
       const Vertex<2> &v = mesh_.vertex(cell[k]);
       const Circumcircle ball = circumcircle(v.M, s[0], s[1], s[2]);
-      const double shortest = shortest_edge(v.M, s);
+      const double shortest = shortest_length<2>(v.M, s);
       const double volume = .5 * cross(s[1] - s[0], s[2] - s[0]) / v.weight;
       const double rho = ball.radius / shortest;
       if (ball.radius >= parameters_.alpha_0 * size_at(ball, cell[k]))
@@ -119,7 +109,7 @@ private:
         worsen(Rule::radius_edge, cell[k]);
       else if (sliverity<2>(volume, shortest) < parameters_.sigma_0)
         worsen(Rule::sliver, cell[k]);
-      else if (bits != all_vertices)
+      else if (bits != all_vertices<2>)
         worsen(Rule::inconsistency, cell[k]);
     }
     return out;
@@ -275,7 +265,7 @@ private:
 };
 
 [[nodiscard]] double failing_fraction(const std::vector<std::uint8_t> &bits) {
-  const auto passing = std::count(bits.begin(), bits.end(), all_vertices);
+  const auto passing = std::count(bits.begin(), bits.end(), all_vertices<2>);
   return 1 - static_cast<double>(passing) / static_cast<double>(bits.size());
 }
 
@@ -350,8 +340,9 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                      (failing < many_failing && counts.rounds % rounds_between_moves ==
                                                     rounds_between_moves - 1));
     if (moving)
-      (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds));
-    renumber(w);
+      (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds),
+                  threads);
+    renumber(w, threads);
     check = check_stars(w, monitor, seed + 1 + std::uint64_t(counts.rounds), threads,
                         moving);
   }

@@ -66,7 +66,8 @@ OnCurve curve_edges_at(const Workspace &w, Index v,
 
 } // namespace
 
-Walk walk_to(const Triangulation<2> &mesh, Index start, const Vector<2> &x) {
+Walk walk_to(const Triangulation<2> &mesh, Index start, const Vector<2> &x,
+             const VertexRange &range) {
   Index cell = start;
   HalfFacet came;
   for (int step = 0; step < max_walk_steps; ++step) {
@@ -85,17 +86,18 @@ Walk walk_to(const Triangulation<2> &mesh, Index start, const Vector<2> &x) {
       return {none, cross};
     came = mesh.opposite(cross);
     cell = came.cell();
+    if (!range.contains(mesh.at(cell)))
+      return {};
   }
   return {};
 }
 
-Index insert_in_cell(Workspace &w, Index cell, const Vertex<2> &vertex,
-                     Index background_cell) {
-  Triangulation<2> &mesh = w.mesh;
+Index insert_in_cell(Triangulation<2> &mesh, Cavity<2> &cavity, Index cell,
+                     const Vertex<2> &vertex, Index background_cell) {
   const Simplex<2> s = mesh.simplex(cell);
   const double area = cross(s[1] - s[0], s[2] - s[0]);
-  w.cavity.clear();
-  w.cavity.add(cell);
+  cavity.clear();
+  cavity.add(cell);
   for (std::size_t i = 0; i < 3; ++i) {
     const double part =
         cross(s[(i + 2) % 3] - s[(i + 1) % 3], vertex.x - s[(i + 1) % 3]);
@@ -103,18 +105,14 @@ Index insert_in_cell(Workspace &w, Index cell, const Vertex<2> &vertex,
       continue;
     if (mesh.constraint(HalfFacet(cell, i)) != none)
       return none;
-    w.cavity.add(mesh.opposite(HalfFacet(cell, i)).cell());
+    cavity.add(mesh.opposite(HalfFacet(cell, i)).cell());
   }
-  const Index v = mesh.add_vertex(vertex, Triangulation<2>::interior, background_cell);
-  w.cavity.bound(v);
-  if (!w.cavity.is_star_shaped(vertex.x)) {
-    mesh.vertices.pop_back();
-    mesh.feature.pop_back();
-    mesh.vertex_cell.pop_back();
-    mesh.background_cell.pop_back();
+  cavity.bound(none);
+  if (!cavity.is_star_shaped(vertex.x))
     return none;
-  }
-  w.cavity.fill(v);
+  const Index v = mesh.add_vertex(vertex, Triangulation<2>::interior, background_cell,
+                                  cavity.slots());
+  cavity.fill(v);
   return v;
 }
 
@@ -129,7 +127,7 @@ Index split_edge(Workspace &w, HalfFacet edge) {
   if (is_constrained) {
     whole = w.curve_edge(edge);
     const Curve &curve = w.curve(whole);
-    if (curve.is_frozen)
+    if (curve.is_frozen || whole.ball != none)
       return none;
     t = middle(curve, whole.t0, whole.t1);
     x = curve.at(t);
@@ -183,6 +181,8 @@ bool bound_collapse(Workspace &w, Collapse &collapse) {
     const CurveEdge in = w.curve_edge(at.into), out = w.curve_edge(at.out_of);
     if (collapse.target != in.v0 && collapse.target != out.v1)
       return false;
+    if (in.ball != none || out.ball != none)
+      return false;
     if (in.v0 == out.v1 || w.curve(in).is_frozen ||
         relative_sagitta(w.curve(in), in.t0, out.t1) > w.hausdorff)
       return false;
@@ -223,8 +223,8 @@ void fill_collapse(Workspace &w, Collapse &collapse) {
   w.mesh.vertex_cell[static_cast<std::size_t>(collapse.vertex)] = none;
 }
 
-void renumber(Workspace &w) {
-  const std::vector<Index> rank = sort_along_curve(w.mesh);
+void renumber(Workspace &w, int threads, double shift) {
+  const std::vector<Index> rank = sort_along_curve(w.mesh, threads, shift);
   for (CurveEdge &edge : w.on_curves.curve_edges)
     for (Index *v : {&edge.v0, &edge.v1})
       if (*v != none) // an entry that a collapse left behind has lost its vertex

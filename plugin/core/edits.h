@@ -2,6 +2,7 @@
 // The edits of a mesh on its curves, each one cavity of the cavity operator.
 
 #include "background.h"
+#include "blocks.h"
 #include "cavity.h"
 #include "curves.h"
 #include "start.h"
@@ -37,17 +38,19 @@ struct Walk {
   HalfFacet wall;    ///< by this constrained edge, if it exists
 };
 
-/// Walks from a cell towards x without crossing a constraint.
+/// Walks from a cell towards x without crossing a constraint or leaving the range.
 [[nodiscard]] Walk walk_to(const Triangulation<2> &mesh, Index start,
-                           const Vector<2> &x);
+                           const Vector<2> &x, const VertexRange &range = {});
 
 /// Inserts an interior vertex into the cell that contains it. @returns the vertex, none
-/// when it lies too near to an edge. The new cells are workspace.cavity.star().
-[[nodiscard]] Index insert_in_cell(Workspace &w, Index cell, const Vertex<2> &vertex,
+/// when it lies too near to an edge. The new cells are cavity.star().
+[[nodiscard]] Index insert_in_cell(Triangulation<2> &mesh, Cavity<2> &cavity,
+                                   Index cell, const Vertex<2> &vertex,
                                    Index background_cell);
 
 /// Splits an edge in its middle: on the curve if it is constrained. @returns the new
-/// vertex, none when the edge is frozen or the curve cannot be followed validly.
+/// vertex, none when the edge is frozen or protected, or the curve cannot be followed
+/// validly.
 [[nodiscard]] Index split_edge(Workspace &w, HalfFacet edge);
 
 /// The removal of a vertex into its neighbour, and what that means for its curve.
@@ -68,6 +71,6 @@ struct Collapse {
 void fill_collapse(Workspace &w, Collapse &collapse);
 
 /// Sorts the mesh along a Hilbert curve and tells the curve edges.
-void renumber(Workspace &w);
+void renumber(Workspace &w, int threads, double shift = 0);
 
 } // namespace anistar

@@ -38,6 +38,19 @@ void Legaliser::push_star(Index v) {
         stack_.emplace_back(h.cell(), i);
 }
 
+void Legaliser::push_finished(Index v, std::span<const HalfFacet> star) {
+  for (HalfFacet h : star) {
+    const auto [a, b] = mesh_.facet(h);
+    if (a > v || b > v)
+      continue;
+    const HalfFacet spoke(h.cell(), (h.facet() + 2) % 3); // from v to a
+    for (HalfFacet edge : {h, spoke})
+      if (const HalfFacet beyond = mesh_.opposite(edge);
+          beyond.exists() && mesh_.apex(beyond) < v)
+        stack_.push_back(edge);
+  }
+}
+
 void Legaliser::run(int cap, std::vector<Index> *changed) {
   int n = 0;
   while (!stack_.empty()) {

@@ -1,19 +1,12 @@
 #pragma once
 // Lawson flips in a blended metric.
 
+#include "blocks.h"
 #include "cavity.h"
 
+#include <utility>
+
 namespace anistar {
-
-/// Vertices first <= v < last: a block of the mesh that one thread may change.
-struct VertexRange {
-  Index first = 0, last = std::numeric_limits<Index>::max();
-
-  [[nodiscard]] bool contains(const Cell<2> &cell) const {
-    return std::all_of(cell.begin(), cell.end(),
-                       [&](Index v) { return first <= v && v < last; });
-  }
-};
 
 /// Restores the blended Delaunay property around changed cells. An edge is flipped when
 /// the opposite vertex lies inside the circumscribed ellipse for the mean of the four
@@ -31,15 +24,18 @@ public:
   void push(HalfFacet edge) { stack_.push_back(edge); }
   /// All edges of the star of v and of its link.
   void push_star(Index v);
+  /// Of these only the edges whose two cells have no vertex after v: the last one of
+  /// the four to be visited in a sweep pushes an edge, once.
+  void push_finished(Index v, std::span<const HalfFacet> star);
 
   /// Flips until the stack is empty or `cap` flips were made. The cells that changed
   /// are appended to `changed` when given.
   void run(int cap, std::vector<Index> *changed = nullptr);
 
-  /// Takes over what another one has counted.
-  void add_counts(const Legaliser &other) {
-    n_flips_ += other.n_flips_;
-    n_capped_ += other.n_capped_;
+  /// Takes over what another one has counted, and lets that one start anew.
+  void take_counts(Legaliser &other) {
+    n_flips_ += std::exchange(other.n_flips_, 0);
+    n_capped_ += std::exchange(other.n_capped_, 0);
   }
   [[nodiscard]] std::size_t n_flips() const { return n_flips_; }
   [[nodiscard]] std::size_t n_capped() const { return n_capped_; }

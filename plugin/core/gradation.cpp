@@ -21,6 +21,9 @@ constexpr double log_steps = 1 << 20;
 /// Share of the entries by which round-off can shift the leading minors, with a margin.
 constexpr double minor_error = 1e-13;
 
+/// Vertices that ask between two looks at the user: some hundredths of a second.
+constexpr std::size_t looks_every = 1 << 14;
+
 /// The order of the queue; positive even where round-off eats the determinant.
 template <std::size_t d> double density(const SymmetricTensor<d> &M) {
   return std::max(determinant(M), std::numeric_limits<double>::min());
@@ -137,6 +140,8 @@ private:
   }
 
   void spread(const Asking &asking) {
+    if (++spread_ % looks_every == 0)
+      options_.look();
     const std::size_t p = asking.vertex;
     for (auto k = offsets_[p]; k < offsets_[p + 1]; ++k) {
       const auto q = static_cast<std::size_t>(neighbours_[k]);
@@ -180,6 +185,7 @@ private:
   std::vector<std::vector<std::size_t>> queue_;
   std::size_t first_ = 0; // no bucket before it has entries
   std::vector<Asking> front_;
+  std::size_t spread_ = 0;
   Graded<d> result_;
 };
 

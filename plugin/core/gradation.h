@@ -3,6 +3,7 @@
 
 #include "tensor.h"
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct GradationOptions {
       max_distortion; ///< of a unit edge: growth stays below 1 + l times this; or inf
   double tolerance;   ///< a metric is raised only where this share is missing
   std::size_t max_rounds;
+  std::function<void()> look; ///< called now and then; may throw, to interrupt
 };
 
 template <std::size_t d> struct Graded {

@@ -1,5 +1,7 @@
 #include "hilbert.h"
 
+#include "parallel.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -43,7 +45,8 @@ template <std::size_t d> std::uint64_t hilbert_key(std::array<std::uint32_t, d> 
 } // namespace
 
 template <std::size_t d>
-std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points) {
+std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points, int threads,
+                                        double shift) {
   Vector<d> low = Vector<d>::Zero(), high = Vector<d>::Zero();
   if (!points.empty())
     low = high = points.front();
@@ -51,24 +54,31 @@ std::vector<std::int32_t> hilbert_order(std::span<const Vector<d>> points) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  const double extent = std::max((high - low).maxCoeff(), 1e-300);
+  const double inner = std::max((high - low).maxCoeff(), 1e-300);
+  const double extent = (1 + 3 * shift) * inner;
+  low.array() -= shift * inner;
   const double cells = static_cast<double>((1u << bits<d>)-1);
   std::vector<std::pair<std::uint64_t, std::int32_t>> keyed(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    std::array<std::uint32_t, d> x;
-    for (std::size_t i = 0; i < d; ++i)
-      x[i] = static_cast<std::uint32_t>(
-          (points[k][static_cast<int>(i)] - low[static_cast<int>(i)]) / extent * cells);
-    keyed[k] = {hilbert_key<d>(x), static_cast<std::int32_t>(k)};
-  }
-  std::sort(keyed.begin(), keyed.end());
+  parallel_ranges(points.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      std::array<std::uint32_t, d> x;
+      for (std::size_t i = 0; i < d; ++i)
+        x[i] = static_cast<std::uint32_t>(
+            (points[k][static_cast<int>(i)] - low[static_cast<int>(i)]) / extent *
+            cells);
+      keyed[k] = {hilbert_key<d>(x), static_cast<std::int32_t>(k)};
+    }
+  });
+  parallel_sort(keyed, threads);
   std::vector<std::int32_t> order(points.size());
   for (std::size_t k = 0; k < points.size(); ++k)
     order[k] = keyed[k].second;
   return order;
 }
 
-template std::vector<std::int32_t> hilbert_order<2>(std::span<const Vector<2>>);
-template std::vector<std::int32_t> hilbert_order<3>(std::span<const Vector<3>>);
+template std::vector<std::int32_t> hilbert_order<2>(std::span<const Vector<2>>, int,
+                                                    double);
+template std::vector<std::int32_t> hilbert_order<3>(std::span<const Vector<3>>, int,
+                                                    double);
 
 } // namespace anistar

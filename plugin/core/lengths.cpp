@@ -1,3 +1,4 @@
+#include "parallel.h"
 #include "shape.h"
 
 namespace anistar {
@@ -81,29 +82,48 @@ private:
   }
 };
 
+/// The edges whose length is wanted, each from one side.
+template <class Wanted>
+std::vector<HalfFacet> edges_of_length(const Workspace &w, int threads, Wanted wanted) {
+  return parallel_search<HalfFacet>(
+      w.mesh.cells.size(), threads, [&](std::size_t c, const auto &add) {
+        if (!w.mesh.is_alive(static_cast<Index>(c)))
+          return;
+        for (std::size_t i = 0; i < 3; ++i) {
+          const HalfFacet edge(static_cast<Index>(c), i), other = w.mesh.opposite(edge);
+          if ((!other.exists() || other.cell() > edge.cell()) && wanted(w.length(edge)))
+            add(edge);
+        }
+      });
+}
+
 } // namespace
 
 LengthCounts control_lengths(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                             double shortest, double longest) {
+                             double shortest, double longest, int threads) {
   LengthControl control(w, legaliser);
   LengthCounts counts;
-  const auto n = static_cast<Index>(w.mesh.vertices.size());
-  for (Index v = 0; v < n && monitor.keep_going(0, .5 * v / n); ++v)
-    if (w.mesh.is_used(v) &&
+  const auto is_short = [&](double length) { return length < shortest; };
+  const auto is_long = [&](double length) { return length > longest; };
+  std::vector<Index> ends;
+  for (HalfFacet edge : edges_of_length(w, threads, is_short))
+    for (Index v : w.mesh.facet(edge))
+      ends.push_back(v);
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  for (Index v : ends)
+    if (monitor.keep_going(0, 0) && w.mesh.is_used(v) &&
         w.mesh.feature[static_cast<std::size_t>(v)] != Triangulation<2>::corner)
       counts.collapses += control.collapse_short(v, shortest);
-  const auto m = static_cast<Index>(w.mesh.cells.size());
-  for (Index c = 0;
-       c < m && monitor.keep_going(w.mesh.vertices.size(), .5 + .5 * c / m); ++c)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const HalfFacet edge(c, i);
-      if (!w.mesh.is_alive(c))
-        break;
-      const HalfFacet other = w.mesh.opposite(edge);
-      if ((!other.exists() || other.cell() > c) && control.split_long(edge, longest)) {
-        ++counts.splits;
-        break;
-      }
+  std::vector<HalfFacet> edges = edges_of_length(w, threads, is_long);
+  for (std::size_t k = 0;
+       k < edges.size() && monitor.keep_going(w.mesh.vertices.size(), .5); ++k)
+    if (w.mesh.is_alive(edges[k].cell()) && control.split_long(edges[k], longest)) {
+      ++counts.splits;
+      for (HalfFacet h : w.cavity.star()) // the halves, when one was very long
+        for (std::size_t i = 0; i < 3; ++i)
+          if (is_long(w.length(HalfFacet(h.cell(), i))))
+            edges.emplace_back(h.cell(), i);
     }
   return counts;
 }

@@ -24,7 +24,8 @@ template <std::size_t d> struct Location {
 template <std::size_t d> class Locator {
 public:
   /// @pre cells positively oriented. @throws std::invalid_argument (see adjacency).
-  Locator(std::span<const Vector<d>> points, std::span<const Cell<d>> cells);
+  Locator(std::span<const Vector<d>> points, std::span<const Cell<d>> cells,
+          int threads = 1);
 
   /// @param hint a cell at which the walk starts; `none` goes to the tree at once.
   [[nodiscard]] Location<d> locate(const Vector<d> &x, Index hint) const;

@@ -57,12 +57,32 @@ template <std::size_t d>
   return 2 * std::numbers::sqrt3 * cross(u, v) / (dense.weight * squares);
 }
 
-/// The circumscribed ellipse of a triangle in a metric.
-struct Circumcircle {
-  Vector<2> centre;
+/// The same for a tetrahedron.
+[[nodiscard]] inline double quality(const Vertex<3> &a, const Vertex<3> &b,
+                                    const Vertex<3> &c, const Vertex<3> &e) {
+  const Vertex<3> *dense = &a;
+  for (const Vertex<3> *v : {&b, &c, &e})
+    if (v->weight < dense->weight)
+      dense = v;
+  const Vector<3> u = b.x - a.x, v = c.x - a.x, w = e.x - a.x;
+  const SymmetricTensor<3> &M = dense->M;
+  const double squares = quadratic<3>(M, u) + quadratic<3>(M, v) + quadratic<3>(M, w) +
+                         quadratic<3>(M, Vector<3>(v - u)) +
+                         quadratic<3>(M, Vector<3>(w - u)) +
+                         quadratic<3>(M, Vector<3>(w - v));
+  // the volume of the unit regular tetrahedron is sqrt(2) / 12
+  const double det = u.dot(v.cross(w)) / dense->weight;
+  const double root = std::cbrt(det * std::numbers::sqrt2);
+  return std::copysign(6 * root * root / squares, det);
+}
+
+/// The circumscribed ellipsoid of a simplex in a metric.
+template <std::size_t d> struct Circumsphere {
+  Vector<d> centre;
   double radius;
-  Vector<2> offset; ///< of the centre from the first vertex, with its own accuracy
+  Vector<d> offset; ///< of the centre from the first vertex, with its own accuracy
 };
+using Circumcircle = Circumsphere<2>;
 
 /// @pre a, b, c turn left.
 [[nodiscard]] inline Circumcircle circumcircle(const SymmetricTensor<2> &M,
@@ -77,6 +97,52 @@ struct Circumcircle {
   const Vector<2> offset((M(1, 1) * gx - M(0, 1) * gy) / det,
                          (M(0, 0) * gy - M(0, 1) * gx) / det);
   return {a + offset, std::sqrt(std::max(0., offset[0] * gx + offset[1] * gy)), offset};
+}
+
+/// @pre the simplex is positively oriented.
+template <std::size_t d>
+[[nodiscard]] inline Circumsphere<d> circumsphere(const SymmetricTensor<d> &M,
+                                                  const Simplex<d> &s) {
+  if constexpr (d == 2) {
+    return circumcircle(M, s[0], s[1], s[2]);
+  } else {
+    const Vector<3> u = s[1] - s[0], v = s[2] - s[0], w = s[3] - s[0];
+    const Vector<3> vw = v.cross(w);
+    // M offset = g with 2 g.u = u^T M u, and so for v and w
+    const Vector<3> g = (quadratic<3>(M, u) * vw + quadratic<3>(M, v) * w.cross(u) +
+                         quadratic<3>(M, w) * u.cross(v)) /
+                        (2 * u.dot(vw));
+    const Matrix<3> L = lower_factor(M);
+    const Vector<3> y = L.template triangularView<Eigen::Lower>().solve(g);
+    const Vector<3> offset =
+        L.transpose().template triangularView<Eigen::Upper>().solve(y);
+    return {s[0] + offset, y.norm(), offset};
+  }
+}
+
+/// The signed area (2D) or volume (3D).
+template <std::size_t d> [[nodiscard]] inline double volume(const Simplex<d> &s) {
+  if constexpr (d == 2)
+    return cross(s[1] - s[0], s[2] - s[0]) / 2;
+  else
+    return (s[1] - s[0]).dot((s[2] - s[0]).cross(s[3] - s[0])) / 6;
+}
+
+/// The length of the shortest edge of a simplex in a metric.
+template <std::size_t d>
+[[nodiscard]] inline double shortest_length(const SymmetricTensor<d> &M,
+                                            const Simplex<d> &s) {
+  double square = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t j = i + 1; j <= d; ++j)
+      square = std::min(square, quadratic<d>(M, s[j] - s[i]));
+  return std::sqrt(square);
+}
+
+/// (Vol / e^d)^(1/d), the sliverity ratio of section 3.2 of RR-7712 v2.
+template <std::size_t d>
+[[nodiscard]] inline double sliverity(double volume, double shortest) {
+  return std::pow(volume, 1. / d) / shortest;
 }
 
 } // namespace anistar

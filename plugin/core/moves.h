@@ -28,7 +28,11 @@ public:
   SlidingVertex(Workspace &w, std::span<const HalfFacet> star, Index v);
 
   /// False at the ends of curves and on frozen ones.
-  [[nodiscard]] bool can_slide() const { return in_ != none && out_ != none; }
+  [[nodiscard]] bool is_on_curve() const { return in_ != none && out_ != none; }
+  /// False also on the shell of a corner, whose vertices move only together.
+  [[nodiscard]] bool can_slide() const {
+    return is_on_curve() && in().ball == none && out().ball == none;
+  }
   [[nodiscard]] const CurveEdge &in() const { return edge(in_); }
   [[nodiscard]] const CurveEdge &out() const { return edge(out_); }
   [[nodiscard]] double room_before() const { return in().t1 - in().t0; }

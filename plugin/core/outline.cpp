@@ -1,6 +1,7 @@
 #include "outline.h"
 
 #include "box_tree.h"
+#include "protection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +9,6 @@
 namespace anistar {
 namespace {
 
-/// Pieces of a curve over which its metric length is taken by the trapezium-like rule
-/// of mean_length: short against the unit edge.
-constexpr double sample_length = .25;
-constexpr int max_sample_depth = 24;
 /// More edges than this on one curve are an absurd request.
 constexpr double most_edges = 1e9;
 /// Parameters this near to a point of the geometry are there: a retreat, which may put
@@ -19,57 +16,6 @@ constexpr double most_edges = 1e9;
 constexpr double at_point = 1e-7;
 /// Chords are bisected at most this often to meet the Hausdorff bound.
 constexpr int max_bisections = 16;
-
-/// A curve's metric length, tabulated.
-struct LengthTable {
-  std::vector<double> parameter{0}, length{0};
-
-  [[nodiscard]] double total() const { return length.back(); }
-  [[nodiscard]] double parameter_at(double s) const {
-    const auto above = std::upper_bound(length.begin() + 1, length.end() - 1, s);
-    const auto k = static_cast<std::size_t>(above - length.begin());
-    const double width = length[k] - length[k - 1];
-    const double r = width > 0 ? (s - length[k - 1]) / width : 0;
-    return parameter[k - 1] + r * (parameter[k] - parameter[k - 1]);
-  }
-};
-
-struct Sampler {
-  const Curve &curve;
-  const Background<2> &background;
-  double limit; ///< metric length beyond which the request is absurd
-  LengthTable table{};
-  Index hint = none;
-
-  Vertex<2> sample(double t) { return background.vertex(curve.at(t), hint); }
-
-  void piece(double t0, const Vertex<2> &a, double t1, const Vertex<2> &b, int depth) {
-    const double whole = edge_length(a, b);
-    const double t = .5 * (t0 + t1);
-    if (depth < max_sample_depth && table.total() < limit) {
-      const Vertex<2> m = sample(t);
-      const double halves = edge_length(a, m) + edge_length(m, b);
-      if (halves > sample_length || std::abs(halves - whole) > .05 * sample_length) {
-        piece(t0, a, t, m, depth + 1);
-        piece(t, m, t1, b, depth + 1);
-        return;
-      }
-    }
-    table.parameter.push_back(t1);
-    table.length.push_back(table.total() + whole);
-  }
-
-  LengthTable run() {
-    Vertex<2> a = sample(0);
-    for (std::size_t k = 0; k < curve.n_segments(); ++k) {
-      const double t = static_cast<double>(k);
-      const Vertex<2> b = sample(t + 1);
-      piece(t, a, t + 1, b, 0);
-      a = b;
-    }
-    return std::move(table);
-  }
-};
 
 void bisect_to_bound(const Curve &curve, double t0, double t1, double hausdorff,
                      int depth, std::vector<double> &cuts) {
@@ -84,7 +30,7 @@ void bisect_to_bound(const Curve &curve, double t0, double t1, double hausdorff,
 
 /// Parameters of the vertices of a curve, from 0 to its end.
 std::vector<double> cut(const Curve &curve, const LengthTable &table,
-                        double hausdorff) {
+                        const Shells &shells, double hausdorff) {
   const double end = static_cast<double>(curve.n_segments());
   std::vector<double> unit{0};
   if (curve.is_frozen) {
@@ -92,11 +38,19 @@ std::vector<double> cut(const Curve &curve, const LengthTable &table,
       unit.push_back(static_cast<double>(k));
     return unit;
   }
+  if (shells.first)
+    unit.push_back(shells.first->parameter);
   const double fewest = curve.is_loop ? 3 : 1;
-  const double n = std::max(fewest, std::round(table.total()));
+  const double begin = table.length_at(unit.back());
+  const double length =
+      table.length_at(shells.last ? shells.last->parameter : end) - begin;
+  const double n = std::max(fewest, std::round(length));
   for (double k = 1; k < n; ++k)
-    unit.push_back(table.parameter_at(table.total() * k / n));
+    unit.push_back(table.parameter_at(begin + length * k / n));
+  if (shells.last)
+    unit.push_back(shells.last->parameter);
   unit.push_back(end);
+  unit.erase(std::unique(unit.begin(), unit.end()), unit.end());
   std::vector<double> cuts{0};
   for (std::size_t k = 0; k + 1 < unit.size(); ++k)
     bisect_to_bound(curve, unit[k], unit[k + 1], hausdorff, 0, cuts);
@@ -105,6 +59,30 @@ std::vector<double> cut(const Curve &curve, const LengthTable &table,
       t = std::round(t);
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
   return cuts;
+}
+
+/// @throws MeshingError when there would be more vertices than may be.
+std::vector<LengthTable> tabulate_lengths(const Geometry &geometry,
+                                          const Background<2> &background,
+                                          std::size_t n_vertices,
+                                          const Monitor &monitor) {
+  std::vector<LengthTable> tables;
+  for (const Curve &curve : geometry.curves) {
+    tables.push_back(tabulate_length(curve, background, most_edges));
+    const double total = tables.back().total();
+    if (!(total < most_edges) ||
+        !monitor.has_room(n_vertices + static_cast<std::size_t>(total)))
+      throw MeshingError(
+          "the metric asks for " +
+              (total < most_edges ? std::to_string(static_cast<long>(total))
+                                  : "more than a billion") +
+              " edges on the curve with tag " + std::to_string(curve.tag) +
+              ", beside " + std::to_string(n_vertices) +
+              " vertices before it, more than there may be; it begins",
+          curve.at(0));
+    n_vertices += static_cast<std::size_t>(total);
+  }
+  return tables;
 }
 
 bool between(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p) {
@@ -184,22 +162,16 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
       (void)fixed(static_cast<Index>(v));
   for (const auto &[point, region] : geometry.free_points)
     outline.free_points.push_back({fixed(point), region});
+  const std::vector<LengthTable> lengths =
+      tabulate_lengths(geometry, background, outline.vertices.size(), monitor);
+  const Protection protection =
+      protect_corners(geometry, background, lengths, hausdorff);
+  outline.n_balls = protection.n_balls;
+  outline.n_unprotected = protection.given_up;
   for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
     const Curve &curve = geometry.curves[c];
-    const LengthTable table = Sampler{curve, background, most_edges}.run();
-    if (!(table.total() < most_edges) ||
-        !monitor.has_room(outline.vertices.size() +
-                          static_cast<std::size_t>(table.total())))
-      throw MeshingError("the metric asks for " +
-                             (table.total() < most_edges
-                                  ? std::to_string(static_cast<long>(table.total()))
-                                  : "more than a billion") +
-                             " edges on the curve with tag " +
-                             std::to_string(curve.tag) + ", beside " +
-                             std::to_string(outline.vertices.size()) +
-                             " vertices before it, more than there may be; it begins",
-                         curve.at(0));
-    const std::vector<double> t = cut(curve, table, hausdorff);
+    const Shells &shells = protection.shells[c];
+    const std::vector<double> t = cut(curve, lengths[c], shells, hausdorff);
     // the seam of a loop stays: a parameter must begin somewhere
     Index previous = fixed(curve.vertices.front());
     for (std::size_t k = 1; k < t.size(); ++k) {
@@ -207,7 +179,11 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
       const Index next =
           is_last ? fixed(curve.vertices.back())
                   : add(curve.at(t[k]), curve.is_frozen ? Triangulation<2>::corner : 1);
-      outline.edges.push_back({static_cast<Index>(c), t[k - 1], t[k], previous, next});
+      const Index ball = k == 1 && shells.first   ? shells.first->ball
+                         : is_last && shells.last ? shells.last->ball
+                                                  : none;
+      outline.edges.push_back(
+          {static_cast<Index>(c), t[k - 1], t[k], previous, next, ball});
       previous = next;
     }
   }

@@ -4,6 +4,7 @@
 #include "background.h"
 #include "curves.h"
 #include "monitor.h"
+#include "protection.h"
 #include "triangulation.h"
 
 #include <string>
@@ -17,6 +18,7 @@ struct CurveEdge {
   Index curve;
   double t0, t1; ///< curve parameters of its ends
   Index v0, v1;
+  Index ball = none; ///< the protecting ball that it crosses from corner to shell
 };
 
 /// Vertices and edges on the curves, plus the points that must stay.
@@ -26,6 +28,8 @@ struct Outline {
   std::vector<Index> background; ///< where its metric was found
   std::vector<CurveEdge> edges;
   std::vector<FreePoint> free_points; ///< `point` is a vertex here
+  Index n_balls = 0;                  ///< protecting balls of sharp corners
+  std::size_t n_unprotected = 0;      ///< sharp corners without one
 };
 
 /// Cuts every curve into edges of equal metric length near 1, none of which leaves the

@@ -89,67 +89,6 @@ Side exact_in_sphere(const SymmetricTensor<3> &M, const Vector<3> &a,
 
 } // namespace detail
 
-namespace {
-
-/// The sign of x, or 2 when the error hides it.
-int certain_sign(const Power &x) {
-  return x.value > x.error ? 1 : x.value < -x.error ? -1 : 2;
-}
-
-bool exact_segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
-                                const Vector<2> &b, const Vector<2> &c,
-                                const Vector<2> &p, const Vector<2> &q) {
-  const Exact area = determinant2(exact_difference<2>(b, a), exact_difference<2>(c, a));
-  const Exact alpha = area * exact_square<2>(M, exact_difference<2>(q, p));
-  const Exact gamma = -exact_sphere_determinant(M, a, b, c, p);
-  const Exact beta = -exact_sphere_determinant(M, a, b, c, q) - gamma - alpha;
-  return CGAL::sign(beta) < 0 && CGAL::sign(alpha + alpha + beta) > 0 &&
-         CGAL::sign(beta * beta - Exact(4) * alpha * gamma) > 0;
-}
-
-} // namespace
-
-bool segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
-                          const Vector<2> &b, const Vector<2> &c, const Vector<2> &p,
-                          const Vector<2> &q, const Power &gamma, const Power &end) {
-  // The power of p + s (q - p), times twice the area of abc, is alpha s^2 + beta s +
-  // gamma with alpha > 0 and gamma >= 0: it is negative somewhere in 0 < s < 1 when its
-  // minimum lies there and is negative.
-  const Vector<2> r = q - p, u = b - a, v = c - a;
-  const double square = quadratic<2>(M, r);
-  const double square_size = M.entries[0] * r[0] * r[0] + M.entries[2] * r[1] * r[1] +
-                             2 * std::abs(M.entries[1] * r[0] * r[1]);
-  const double area = cross(u, v);
-  const double area_size = std::abs(u[0] * v[1]) + std::abs(u[1] * v[0]);
-  const Power alpha{area * square, detail::sphere_bound_2 * area_size * square_size +
-                                       detail::underflow_guard};
-  const double beta_value = end.value - gamma.value - alpha.value;
-  const Power beta{beta_value, end.error + gamma.error + alpha.error +
-                                   4 * detail::round_off *
-                                       (std::abs(end.value) + std::abs(gamma.value) +
-                                        std::abs(alpha.value))};
-  const int falls = certain_sign(beta);
-  if (falls == 1)
-    return false;
-  const int rises = certain_sign(
-      {2 * alpha.value + beta.value,
-       2 * alpha.error + beta.error +
-           4 * detail::round_off * (2 * std::abs(alpha.value) + std::abs(beta.value))});
-  if (rises == -1)
-    return false;
-  const double b2 = beta.value * beta.value, ac = 4 * alpha.value * gamma.value;
-  const double b2_error = beta.error * (2 * std::abs(beta.value) + beta.error);
-  const double ac_error = 4 * (alpha.error * (std::abs(gamma.value) + gamma.error) +
-                               std::abs(alpha.value) * gamma.error);
-  const int dips = certain_sign(
-      {b2 - ac, b2_error + ac_error + 4 * detail::round_off * (b2 + std::abs(ac))});
-  if (dips == -1)
-    return false;
-  if (falls == -1 && rises == 1 && dips == 1)
-    return true;
-  return exact_segment_meets_sphere(M, a, b, c, p, q);
-}
-
 Side in_metric_sphere(const SymmetricTensor<3> &M, const Vector<3> &a,
                       const Vector<3> &b, const Vector<3> &c, const Vector<3> &e,
                       const Vector<3> &p) {

@@ -151,27 +151,6 @@ struct Estimate {
   return detail::exact_in_sphere(M, a, b, c, p);
 }
 
-/// The power of a point with respect to the circumscribed ellipse of abc, times twice
-/// the area of abc, known up to an error: negative inside, exactly 0 at a, b and c.
-struct Power {
-  double value = 0, error = 0;
-};
-
-[[nodiscard]] inline Power sphere_power(const SymmetricTensor<2> &M, const Vector<2> &a,
-                                        const Vector<2> &b, const Vector<2> &c,
-                                        const Vector<2> &p) {
-  const Estimate det = sphere_determinant(M, a, b, c, p);
-  return {-det.value, detail::sphere_bound_2 * det.size + detail::underflow_guard};
-}
-
-/// Whether the open segment pq meets the open circumscribed ellipse of abc in the
-/// metric M, given the powers of its ends.
-/// @pre a, b, c turn left, and neither p nor q lies inside.
-[[nodiscard]] bool segment_meets_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
-                                        const Vector<2> &b, const Vector<2> &c,
-                                        const Vector<2> &p, const Vector<2> &q,
-                                        const Power &at_p, const Power &at_q);
-
 /// The same in 3D. @pre abce has positive volume.
 [[nodiscard]] Side in_metric_sphere(const SymmetricTensor<3> &M, const Vector<3> &a,
                                     const Vector<3> &b, const Vector<3> &c,

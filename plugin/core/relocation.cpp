@@ -6,15 +6,18 @@ namespace {
 /// What a relocation must keep, unless it was worse before.
 constexpr double quality_floor = .5;
 constexpr double shortest_kept = .64, longest_kept = 1.5;
+/// Where the metric jumps, its interpolation may not last: no end may see much more.
+constexpr double longest_kept_at_end = 2;
 /// |ln l| up to here is free: a little inside the bounds of a unit edge.
 const double unit_excess = std::log(longest_unit) - .03;
 
 } // namespace
 
-bool StarScore::keeps(const StarScore &before) const {
-  return quality >= std::min(quality_floor, before.quality) &&
-         shortest >= std::min(shortest_kept, before.shortest) &&
-         longest <= std::max(longest_kept, before.longest);
+bool StarScore::keeps(const StarScore &before, double part) const {
+  return quality >= std::min(quality_floor, part * before.quality) &&
+         shortest >= std::min(shortest_kept, part * before.shortest) &&
+         longest <= std::max(longest_kept, before.longest) &&
+         longest_at_end <= std::max(longest_kept_at_end, before.longest_at_end);
 }
 
 int Relocation::count_disagreeing() const {
@@ -35,14 +38,24 @@ StarScore Relocation::score() const {
   StarScore out;
   out.disagreeing = count_disagreeing();
   const Vertex<2> &v = mesh_.vertex(v_);
-  for (HalfFacet h : star_) {
-    const auto [a, b] = mesh_.facet(h);
-    out.quality = std::min(out.quality, quality(v, mesh_.vertex(a), mesh_.vertex(b)));
-    const double l = edge_length(v, mesh_.vertex(a));
+  const auto add_edge_to = [&](const Vertex<2> &u) {
+    const Vector<2> e = u.x - v.x;
+    const double lv = std::sqrt(quadratic<2>(v.M, e));
+    const double lu = std::sqrt(quadratic<2>(u.M, e));
+    const double l = mean_length(lv, lu);
+    out.longest_at_end = std::max({out.longest_at_end, lv, lu});
     out.shortest = std::min(out.shortest, l);
     out.longest = std::max(out.longest, l);
     out.excess += std::max(0., std::abs(std::log(l)) - unit_excess);
+  };
+  for (HalfFacet h : star_) {
+    const auto [a, b] = mesh_.facet(h);
+    out.quality = std::min(out.quality, quality(v, mesh_.vertex(a), mesh_.vertex(b)));
+    add_edge_to(mesh_.vertex(a));
   }
+  const Index last = mesh_.facet(star_.back())[1];
+  if (last != mesh_.facet(star_.front())[0]) // on the boundary the star is open
+    add_edge_to(mesh_.vertex(last));
   return out;
 }
 

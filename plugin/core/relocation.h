@@ -20,12 +20,17 @@ struct StarScore {
   int disagreeing = 0; ///< edges of the star and of its link
   double quality = 1;
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  double longest_at_end = 0; ///< in the metric of one end of an edge
   double excess =
       0; ///< sum over its edges of how far |ln length| is beyond a unit edge
 
-  /// No worse than the bounds of a relocation, or than it was.
-  [[nodiscard]] bool keeps(const StarScore &before) const;
+  /// No worse than the bounds of a relocation, or than this part of what it was.
+  [[nodiscard]] bool keeps(const StarScore &before, double part = 1) const;
 };
+
+/// Where two walls leave room for flat cells only, every slide on a curve makes one of
+/// them a little flatter: sliding vertices keep this part.
+inline constexpr double part_kept_on_curve = .7;
 
 /// A vertex with where its metric was found.
 struct Place {

@@ -16,7 +16,7 @@ struct Round {
   int pliant_sweeps, odt_sweeps;
   double shortest, longest; ///< lengths to control after the sweeps; 0: none
 };
-constexpr Round schedule[] = {{3, 0, .68, 1.45}, {3, 0, .70, 1.42}, {2, 2, 0, 0}};
+constexpr Round schedule[] = {{3, 0, .68, 1.45}, {3, 0, .70, 1.42}, {3, 2, 0, 0}};
 
 /// Outliers of the last sweeps: edges beyond these, cells below this quality.
 constexpr double shortest_outlier = .5, longest_outlier = 1.55;
@@ -78,7 +78,8 @@ private:
 void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
            std::map<std::string, double> &counts) {
   const auto control = [&](double shortest, double longest) {
-    const LengthCounts done = control_lengths(w, legaliser, monitor, shortest, longest);
+    const LengthCounts done =
+        control_lengths(w, legaliser, monitor, shortest, longest, threads);
     counts["splits"] += static_cast<double>(done.splits);
     counts["collapses"] += static_cast<double>(done.collapses);
   };
@@ -87,11 +88,13 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
       smooth(w, legaliser, monitor, Target::unit_edges, threads);
     for (int k = 0; k < round.odt_sweeps; ++k)
       smooth(w, legaliser, monitor, Target::odt, threads);
-    if (round.longest > 0)
+    if (round.longest > 0) {
       control(round.shortest, round.longest);
+      renumber(w, threads); // the new vertices into the blocks where they lie
+    }
   }
   control(shortest_outlier, longest_outlier);
-  counts["poor"] = static_cast<double>(repair(w, monitor, repair_floor));
+  counts["poor"] = static_cast<double>(repair(w, monitor, repair_floor, threads));
 }
 
 /// Phases 4 and 5, as far as the metric and the settings let them.
@@ -99,7 +102,8 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                    const RemeshSettings &settings, Stopwatch &watch,
                    RemeshResult &out) {
   watch.phase("agreement");
-  out.distortion = distortion_quantiles(w.mesh.vertices, w.mesh.cells);
+  out.distortion =
+      distortion_quantiles(w.mesh.vertices, w.mesh.cells, settings.threads);
   const bool can_agree = out.distortion.p99 <= largest_agreeing_distortion;
   const bool is_pure = settings.consistency == ConsistencyMode::pure;
   if (settings.agreement == AgreementMode::off &&
@@ -116,8 +120,9 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
       !is_pure && (settings.agreement == AgreementMode::on ||
                    (settings.agreement == AgreementMode::when_possible && can_agree));
   if (agreeing) {
-    const AgreementCounts agreed = agree(w, legaliser, monitor, settings.seed);
-    renumber(w);
+    const AgreementCounts agreed =
+        agree(w, legaliser, monitor, settings.seed, settings.threads);
+    renumber(w, settings.threads);
     out.counts["disagreeing_before"] = static_cast<double>(agreed.edges_before);
     out.counts["disagreeing_after"] = static_cast<double>(agreed.edges_after);
     out.counts["trials"] = static_cast<double>(agreed.trials);
@@ -175,23 +180,27 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   Outline outline =
       make_outline(geometry, background, settings.hausdorff_number, monitor);
 
+  out.counts["protected_corners"] = static_cast<double>(outline.n_balls);
+  out.counts["unprotected_corners"] = static_cast<double>(outline.n_unprotected);
+
   watch.phase("size");
   MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));
   Workspace w{on_curves, geometry, background, settings.hausdorff_number};
   Legaliser legaliser(w.mesh);
-  const RefineCounts refined = refine(w, legaliser, monitor);
+  const RefineCounts refined = refine(w, legaliser, monitor, settings.threads);
 
   watch.phase("shape");
-  renumber(w);
+  renumber(w, settings.threads);
   if (settings.consistency != ConsistencyMode::pure)
     shape(w, legaliser, monitor, settings.threads, out.counts);
-  renumber(w);
+  renumber(w, settings.threads);
 
   certify_stars(w, legaliser, monitor, settings, watch, out);
 
   watch.phase("report");
+  out.statistics =
+      measure(w.mesh.vertices, w.mesh.cells, w.mesh.neighbours, settings.threads);
   extract(w, out);
-  out.statistics = measure(out.vertices, out.cells);
   watch.stop();
   out.counts["inserted"] = static_cast<double>(refined.inserted);
   out.counts["boundary_splits"] = static_cast<double>(refined.boundary_splits);

@@ -1,3 +1,4 @@
+#include "parallel.h"
 #include "shape.h"
 
 #include <array>
@@ -193,21 +194,26 @@ private:
 
 } // namespace
 
-std::size_t repair(Workspace &w, Monitor &monitor, double floor) {
+std::size_t repair(Workspace &w, Monitor &monitor, double floor, int threads) {
   Repair operations(w);
-  std::size_t poor = 0;
+  std::size_t n_poor = 0;
   bool changed = true;
   for (int round = 0; round < max_rounds && changed; ++round) {
+    const auto is_poor = [&](Index c) {
+      return w.mesh.is_alive(c) && operations.quality_of(c) < floor;
+    };
+    const auto poor = parallel_search<Index>(w.mesh.cells.size(), threads,
+                                             [&](std::size_t c, const auto &add) {
+                                               if (is_poor(static_cast<Index>(c)))
+                                                 add(static_cast<Index>(c));
+                                             });
+    n_poor = poor.size();
     changed = false;
-    poor = 0;
-    const auto m = static_cast<Index>(w.mesh.cells.size());
-    for (Index c = 0; c < m && monitor.keep_going(w.mesh.vertices.size(), 0); ++c)
-      if (w.mesh.is_alive(c) && operations.quality_of(c) < floor) {
-        ++poor;
+    for (Index c : poor)
+      if (monitor.keep_going(w.mesh.vertices.size(), 0) && is_poor(c))
         changed = operations.improve(c) || changed;
-      }
   }
-  return poor;
+  return n_poor;
 }
 
 } // namespace anistar

@@ -17,10 +17,8 @@ enum class Target {
 /// valid, takes the metric of its new place, and its edges are legalised. Vertices on a
 /// curve slide along it.
 ///
-/// Blocks of the Hilbert order are swept side by side, then in order what concerns more
-/// than one block: the vertices between them, and those on curves, which must not run
-/// into another part of the boundary. The blocks do not depend on the number of
-/// threads, nor does the result.
+/// Blocks are swept side by side, see blocks.h. Vertices on curves wait for the end:
+/// they must not run into another part of the boundary.
 void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
             int threads);
 
@@ -31,11 +29,11 @@ struct LengthCounts {
 /// Removes vertices with an edge shorter than `shortest`, then splits edges longer than
 /// `longest`.
 LengthCounts control_lengths(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                             double shortest, double longest);
+                             double shortest, double longest, int threads);
 
 /// Raises the worst cells: around every cell below `floor` swaps, moves, collapses and
 /// splits that raise the minimum quality, for a few rounds. @returns the number of
 /// cells below it when the last round met them.
-std::size_t repair(Workspace &w, Monitor &monitor, double floor);
+std::size_t repair(Workspace &w, Monitor &monitor, double floor, int threads);
 
 } // namespace anistar

@@ -1,9 +1,9 @@
+#include "blocks.h"
 #include "moves.h"
-#include "parallel.h"
 #include "shape.h"
 
 #include <cmath>
-#include <mutex>
+#include <memory>
 
 namespace anistar {
 namespace {
@@ -12,8 +12,6 @@ namespace {
 constexpr double longest_move = .3;
 constexpr int max_halvings = 4;
 constexpr int flip_cap = 40;
-/// Vertices of a block: few enough for many threads, enough that few lie in between.
-constexpr std::size_t block_size = 8192;
 
 class Smoother {
 public:
@@ -26,6 +24,8 @@ public:
     const Index feature = mesh.feature[static_cast<std::size_t>(v)];
     if (feature == Triangulation<2>::corner)
       return true;
+    if (feature == 1 && !range.is_unbounded())
+      return false; // it might run into another part of the boundary
     star_of(mesh, v, star_);
     for (HalfFacet h : star_)
       if (!range.contains(mesh.at(h.cell())))
@@ -38,10 +38,12 @@ public:
     const double length = std::sqrt(quadratic<2>(vertex.M, step));
     if (length > longest_move)
       step *= longest_move / length;
-    if (feature == 1 ? slide(v) : move(v, step)) {
+    const bool moved = feature == 1 ? slide(v) : move(v, step);
+    if (moved && (range.is_unbounded() || target_ == Target::odt))
       legaliser_.push_star(v);
-      legaliser_.run(flip_cap);
-    }
+    else
+      legaliser_.push_finished(v, star_);
+    legaliser_.run(flip_cap);
     return true;
   }
 
@@ -89,39 +91,37 @@ private:
   }
 };
 
-bool is_on_curve(const Triangulation<2> &mesh, Index v) {
-  return mesh.feature[static_cast<std::size_t>(v)] == 1;
-}
+/// A smoother of its own for each thread.
+class BlockSmoother {
+public:
+  BlockSmoother(Workspace &w, Legaliser &legaliser, Target target)
+      : total_(legaliser), own_(std::make_unique<Legaliser>(w.mesh)),
+        smoother_(w, *own_, target) {}
+
+  bool visit(Index v, const VertexRange &range) {
+    own_->restrict_to(range);
+    return smoother_.visit(v, range);
+  }
+  void leave(std::size_t) { total_.take_counts(*own_); }
+
+private:
+  Legaliser &total_;
+  std::unique_ptr<Legaliser> own_;
+  Smoother smoother_;
+};
 
 } // namespace
 
 void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
             int threads) {
-  const std::size_t n = w.mesh.vertices.size();
-  const std::size_t n_blocks = std::max<std::size_t>(1, n / block_size);
-  if (!monitor.look(0))
-    return;
-  std::vector<std::vector<Index>> between(n_blocks);
-  std::mutex counting;
-  parallel_ranges(n_blocks, threads, [&](std::size_t begin, std::size_t end) {
-    Legaliser own(w.mesh);
-    Smoother smoother(w, own, target);
-    for (std::size_t block = begin; block < end; ++block) {
-      const VertexRange range{static_cast<Index>(n * block / n_blocks),
-                              static_cast<Index>(n * (block + 1) / n_blocks)};
-      own.restrict_to(range);
-      for (Index v = range.first; v < range.last; ++v)
-        if (w.mesh.is_used(v) && (is_on_curve(w.mesh, v) || !smoother.visit(v, range)))
-          between[block].push_back(v);
-    }
-    const std::lock_guard lock(counting);
-    legaliser.add_counts(own);
-  });
-  Smoother smoother(w, legaliser, target);
-  for (const std::vector<Index> &vertices : between)
-    for (Index v : vertices)
-      if (w.mesh.is_used(v))
-        (void)smoother.visit(v, {});
+  std::vector<Index> vertices;
+  for (std::size_t v = 0; v < w.mesh.vertices.size(); ++v)
+    if (w.mesh.is_used(static_cast<Index>(v)))
+      vertices.push_back(static_cast<Index>(v));
+  Smoother last(w, legaliser, target);
+  visit_in_blocks(
+      Blocks(w.mesh.vertices.size()), vertices, threads, monitor, 0,
+      [&] { return BlockSmoother(w, legaliser, target); }, last);
 }
 
 } // namespace anistar

@@ -9,7 +9,7 @@
 namespace anistar {
 namespace {
 
-constexpr int max_rounds = 4;
+constexpr int max_rounds = 8;
 /// Trial places of each vertex that could mend a failure.
 constexpr int n_candidates = 16;
 constexpr double radius = .3;
@@ -46,15 +46,22 @@ public:
     return false;
   }
 
+  /// The cells of the stars that were moved since the last call.
+  [[nodiscard]] std::vector<Index> take_changed() {
+    return std::exchange(changed_, {});
+  }
+  /// As the certificate sees one cell now.
+  [[nodiscard]] DelaunayTest<2> &test() { return test_; }
+
 private:
   Workspace &w_;
   Triangulation<2> &mesh_;
   std::uint64_t seed_;
   Relocation relocation_;
-  DelaunayTest test_;
+  DelaunayTest<2> test_;
   std::vector<std::uint32_t> seen_;
   std::uint32_t epoch_ = 0;
-  std::vector<HalfFacet> ring_;
+  std::vector<Index> changed_;
 
   /// Cells within three layers of the star: those whose ball can reach the vertex, but
   /// for accidents that the next round finds.
@@ -104,18 +111,50 @@ private:
       relocation_.put(relocation_.at(x));
       const StarScore found = relocation_.score();
       if (found.keeps(before) && found.disagreeing <= before.disagreeing &&
-          failures(cells) < failing)
+          failures(cells) < failing) {
+        for (HalfFacet h : relocation_.star())
+          changed_.push_back(h.cell());
         return true;
+      }
       relocation_.put(from);
     }
     return false;
   }
 };
 
+/// The cells whose answer can depend on a changed one: those that looked as far as it.
+std::vector<Index> dependent(const Triangulation<2> &mesh,
+                             const std::vector<Index> &changed,
+                             const std::vector<std::uint8_t> &reach) {
+  std::vector<bool> is_seen(mesh.cells.size(), false);
+  std::vector<Index> layer, next, found;
+  const auto see = [&](Index c) {
+    if (c == none || is_seen[static_cast<std::size_t>(c)])
+      return;
+    is_seen[static_cast<std::size_t>(c)] = true;
+    next.push_back(c);
+  };
+  for (Index c : changed)
+    see(c);
+  const int farthest = *std::max_element(reach.begin(), reach.end());
+  for (int distance = 0; distance <= farthest && !next.empty(); ++distance) {
+    layer.swap(next);
+    next.clear();
+    for (Index c : layer) {
+      if (reach[static_cast<std::size_t>(c)] >= distance)
+        found.push_back(c);
+      for (HalfFacet beyond : mesh.neighbours[static_cast<std::size_t>(c)])
+        if (beyond.exists())
+          see(beyond.cell());
+    }
+  }
+  return found;
+}
+
 std::vector<Index> failing_cells(const std::vector<std::uint8_t> &bits) {
   std::vector<Index> cells;
   for (std::size_t c = 0; c < bits.size(); ++c)
-    if (bits[c] != all_vertices)
+    if (bits[c] != all_vertices<2>)
       cells.push_back(static_cast<Index>(c));
   return cells;
 }
@@ -124,7 +163,7 @@ void count_certified(const Triangulation<2> &mesh, StarCheck &check) {
   std::vector<bool> ok(mesh.vertices.size(), true);
   std::size_t cells = 0;
   for (std::size_t c = 0; c < check.bits.size(); ++c) {
-    cells += check.bits[c] == all_vertices;
+    cells += check.bits[c] == all_vertices<2>;
     for (std::size_t k = 0; k < 3; ++k)
       if ((check.bits[c] >> k & 1) == 0)
         ok[static_cast<std::size_t>(mesh.cells[c][k])] = false;
@@ -139,27 +178,33 @@ void count_certified(const Triangulation<2> &mesh, StarCheck &check) {
 StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed, int threads,
                       bool mend) {
   const Triangulation<2> &mesh = w.mesh;
+  DelaunayBits found = delaunay_bits<2>(
+      {mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints}, threads);
+  std::vector<Index> failing = failing_cells(found.bits);
   StarCheck check;
-  Mender mender(w, seed);
-  for (int round = 0; round <= max_rounds; ++round) {
-    check.bits = delaunay_bits(
-        {mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints}, threads);
-    const std::vector<Index> failing = failing_cells(check.bits);
-    if (round == 0)
-      check.failures = failing.size();
-    const bool hopeless =
-        static_cast<double>(failing.size()) > few * static_cast<double>(mesh.n_cells());
-    if (failing.empty() || !mend || hopeless || round == max_rounds ||
-        !monitor.look(double(round) / max_rounds))
-      break;
-    std::size_t moves = 0;
-    for (Index c : failing)
-      if (monitor.keep_going(0, 0))
-        moves += mender.mend(c, round);
-    check.moves += moves;
-    if (moves == 0)
-      break;
+  check.failures = failing.size();
+  const bool hopeless =
+      static_cast<double>(failing.size()) > few * static_cast<double>(mesh.n_cells());
+  if (mend && !hopeless && !failing.empty()) {
+    Mender mender(w, seed);
+    for (int round = 0; round < max_rounds && !failing.empty() &&
+                        monitor.look(double(round) / max_rounds);
+         ++round) {
+      std::size_t moves = 0;
+      for (Index c : failing)
+        if (monitor.keep_going(0, 0))
+          moves += mender.mend(c, round);
+      check.moves += moves;
+      if (moves == 0)
+        break;
+      for (Index c : dependent(mesh, mender.take_changed(), found.reach)) {
+        found.bits[static_cast<std::size_t>(c)] = mender.test().bits(c);
+        found.reach[static_cast<std::size_t>(c)] = mender.test().reach();
+      }
+      failing = failing_cells(found.bits);
+    }
   }
+  check.bits = std::move(found.bits);
   count_certified(mesh, check);
   return check;
 }

@@ -24,7 +24,11 @@ struct Statistics {
 
 /// Edge lengths and qualities by the metric at the vertices.
 [[nodiscard]] Statistics measure(std::span<const Vertex<2>> vertices,
-                                 std::span<const Cell<2>> cells);
+                                 std::span<const Cell<2>> cells,
+                                 std::span<const Neighbours<2>> neighbours,
+                                 int threads);
+[[nodiscard]] Statistics measure(std::span<const Vertex<3>> vertices,
+                                 std::span<const Cell<3>> cells, int threads);
 
 /// Quantiles of ln gamma, the logarithm of the distortion between the metrics at the
 /// two ends of an edge: what decides whether stars can agree.
@@ -33,11 +37,16 @@ struct DistortionQuantiles {
 };
 [[nodiscard]] DistortionQuantiles
 distortion_quantiles(std::span<const Vertex<2>> vertices,
-                     std::span<const Cell<2>> cells);
+                     std::span<const Cell<2>> cells, int threads);
+[[nodiscard]] DistortionQuantiles
+distortion_quantiles(std::span<const Vertex<3>> vertices,
+                     std::span<const Cell<3>> cells, int threads);
 
 /// gamma(M, N) = max(|F_M^-1 F_N|, |F_N^-1 F_M|), the distortion between two metrics
 /// (RR-7712 v2, section 2).
 [[nodiscard]] double distortion(const SymmetricTensor<2> &M,
                                 const SymmetricTensor<2> &N);
+[[nodiscard]] double distortion(const SymmetricTensor<3> &M,
+                                const SymmetricTensor<3> &N);
 
 } // namespace anistar

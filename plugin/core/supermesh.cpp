@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 
 namespace anistar {
 namespace {
@@ -107,11 +109,15 @@ public:
 
   Supermesh<d> run() {
     monitor_.enter("supermesh");
-    Index n_regions = 0;
-    for (const Index region : target_.regions)
-      n_regions = std::max(n_regions, region + 1);
-    for (Index region = 0; region < n_regions; ++region)
-      assemble(region_of(region));
+    const auto sources = by_region(source_), targets = by_region(target_);
+    for (std::size_t region = 0; region < targets.size(); ++region) {
+      if (targets[region].empty())
+        continue;
+      if (region >= sources.size() || sources[region].empty())
+        throw std::invalid_argument("the source has no region " +
+                                    std::to_string(region));
+      assemble({sources[region], in_order(targets[region]), located(sources[region])});
+    }
     return gathered();
   }
 
@@ -123,27 +129,48 @@ private:
   std::size_t n_done_ = 0;
   std::vector<double> loads_; ///< every target cell is written by one thread only
 
-  Region<d> region_of(Index region) const {
-    std::vector<Index> sources, targets;
+  static std::vector<std::vector<Index>> by_region(const RegionMesh<d> &mesh) {
+    std::vector<std::vector<Index>> cells;
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+      const auto region = static_cast<std::size_t>(mesh.regions[c]);
+      if (region >= cells.size())
+        cells.resize(region + 1);
+      cells[region].push_back(static_cast<Index>(c));
+    }
+    return cells;
+  }
+
+  /// A locator of some source cells, with no other points than theirs.
+  Locator<d> located(const std::vector<Index> &sources) const {
     std::vector<Cell<d>> cells;
-    for (std::size_t c = 0; c < source_.cells.size(); ++c)
-      if (source_.regions[c] == region) {
-        sources.push_back(static_cast<Index>(c));
-        cells.push_back(source_.cells[c]);
-      }
+    std::vector<Index> used;
+    for (const Index c : sources) {
+      cells.push_back(source_.cells[static_cast<std::size_t>(c)]);
+      used.insert(used.end(), cells.back().begin(), cells.back().end());
+    }
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<Vector<d>> points;
+    for (const Index v : used)
+      points.push_back(source_.points[static_cast<std::size_t>(v)]);
+    for (Cell<d> &cell : cells)
+      for (Index &v : cell)
+        v = static_cast<Index>(std::lower_bound(used.begin(), used.end(), v) -
+                               used.begin());
+    return Locator<d>(points, cells);
+  }
+
+  std::vector<Index> in_order(const std::vector<Index> &targets) const {
     std::vector<Vector<d>> centroids;
-    for (std::size_t c = 0; c < target_.cells.size(); ++c)
-      if (target_.regions[c] == region) {
-        targets.push_back(static_cast<Index>(c));
-        centroids.push_back(Vector<d>::Zero());
-        for (const Index v : target_.cells[c])
-          centroids.back() += target_.points[static_cast<std::size_t>(v)];
-      }
-    std::vector<Index> ordered(targets.size());
-    const auto order = hilbert_order<d>(centroids);
-    for (std::size_t k = 0; k < order.size(); ++k)
-      ordered[k] = targets[static_cast<std::size_t>(order[k])];
-    return {std::move(sources), std::move(ordered), Locator<d>(source_.points, cells)};
+    for (const Index c : targets) {
+      centroids.push_back(Vector<d>::Zero());
+      for (const Index v : target_.cells[static_cast<std::size_t>(c)])
+        centroids.back() += target_.points[static_cast<std::size_t>(v)];
+    }
+    std::vector<Index> ordered;
+    for (const Index k : hilbert_order<d>(centroids))
+      ordered.push_back(targets[static_cast<std::size_t>(k)]);
+    return ordered;
   }
 
   void assemble(const Region<d> &region) {
@@ -232,8 +259,9 @@ private:
       row.columns.clear();
       row.values.clear();
       for (const Overlap<d> &overlap : cover.overlaps) {
-        const auto source = static_cast<std::size_t>(overlap.source);
-        const Cell<d> &from = region.locator.cells()[source];
+        const auto source = static_cast<std::size_t>(
+            region.sources[static_cast<std::size_t>(overlap.source)]);
+        const Cell<d> &from = source_.cells[source];
         for (std::size_t j = 0; j <= d; ++j)
           compressor.add(from[j], overlap.moments[i][j]);
       }

@@ -55,7 +55,8 @@ template <std::size_t d> struct Supermesh {
 };
 
 /// Lays the target over the source, region by region.
-/// @pre positively oriented cells; every region of the target is one of the source.
+/// @pre positively oriented cells, regions not negative.
+/// @throws std::invalid_argument when a region of the target is none of the source.
 template <std::size_t d>
 [[nodiscard]] Supermesh<d>
 supermesh(const RegionMesh<d> &source, const RegionMesh<d> &target,

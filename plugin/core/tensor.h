@@ -168,8 +168,61 @@ template <std::size_t d>
   return matrix_function(M, [](double x) { return std::log(x); });
 }
 
+namespace detail {
+/// (exp a - exp b) / (a - b).
+[[nodiscard]] inline double exp_difference(double a, double b) {
+  const double h = a - b;
+  return std::exp(b) * (std::abs(h) < 1e-8 ? 1 + .5 * h : std::expm1(h) / h);
+}
+
+/// Eigenvalues of a symmetric 3 x 3 tensor in decreasing order, to the square root of
+/// the precision where two are close: enough as nodes of an interpolation.
+[[nodiscard]] inline std::array<double, 3>
+close_eigenvalues(const SymmetricTensor<3> &A) {
+  const double mean = (A(0, 0) + A(1, 1) + A(2, 2)) / 3;
+  SymmetricTensor<3> D = A;
+  for (std::size_t i = 0; i < 3; ++i)
+    D(i, i) -= mean;
+  const double squares =
+      D(0, 0) * D(0, 0) + D(1, 1) * D(1, 1) + D(2, 2) * D(2, 2) +
+      2 * (D(0, 1) * D(0, 1) + D(0, 2) * D(0, 2) + D(1, 2) * D(1, 2));
+  if (!(squares > 1e-24))
+    return {mean, mean, mean};
+  const double radius = std::sqrt(squares / 6);
+  const double cosine =
+      std::clamp(determinant<3>(D) / (2 * radius * radius * radius), -1., 1.);
+  const double angle = std::acos(cosine) / 3;
+  const double high = 2 * radius * std::cos(angle);
+  const double low = 2 * radius * std::cos(angle + 2.0943951023931953); // 2 pi / 3
+  return {mean + high, mean - high - low, mean + low};
+}
+} // namespace detail
+
 template <std::size_t d>
 [[nodiscard]] inline SymmetricTensor<d> exp(const SymmetricTensor<d> &L) {
+  if constexpr (d == 3) {
+    const auto [x, y, z] = detail::close_eigenvalues(L);
+    // beyond this range the smallest eigenvalue would drown in the round-off
+    constexpr double largest_range = 20;
+    if (x - z < largest_range) {
+      // Newton interpolation in x, y, z; exp is entire, so nearly equal nodes are fine
+      const double xy = detail::exp_difference(x, y), yz = detail::exp_difference(y, z);
+      const double xyz =
+          x - z > 1e-4 ? (xy - yz) / (x - z) : .5 * std::exp((x + y + z) / 3);
+      SymmetricTensor<d> A = L, B = L, out;
+      for (std::size_t i = 0; i < d; ++i) {
+        A(i, i) -= x;
+        B(i, i) -= y;
+      }
+      for (std::size_t i = 0; i < d; ++i)
+        for (std::size_t j = 0; j <= i; ++j)
+          out(i, j) = xy * A(i, j) +
+                      xyz * (A(i, 0) * B(0, j) + A(i, 1) * B(1, j) + A(i, 2) * B(2, j));
+      for (std::size_t i = 0; i < d; ++i)
+        out(i, i) += std::exp(x);
+      return out;
+    }
+  }
   return matrix_function(L, [](double x) { return std::exp(x); });
 }
 

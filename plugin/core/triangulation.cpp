@@ -1,6 +1,7 @@
 #include "triangulation.h"
 
 #include "hilbert.h"
+#include "parallel.h"
 
 #include <numeric>
 
@@ -31,10 +32,12 @@ void star_of(const Triangulation<2> &mesh, Index v, std::vector<HalfFacet> &star
 namespace {
 
 template <class T>
-void permute(std::vector<T> &values, const std::vector<Index> &order) {
+void permute(std::vector<T> &values, const std::vector<Index> &order, int threads) {
   std::vector<T> sorted(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k)
-    sorted[k] = values[static_cast<std::size_t>(order[k])];
+  parallel_ranges(order.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      sorted[k] = values[static_cast<std::size_t>(order[k])];
+  });
   values = std::move(sorted);
 }
 
@@ -65,7 +68,8 @@ std::vector<Index> cells_by_first_vertex(const Triangulation<d> &mesh) {
 
 } // namespace
 
-template <std::size_t d> std::vector<Index> sort_along_curve(Triangulation<d> &mesh) {
+template <std::size_t d>
+std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads, double shift) {
   std::vector<Index> used;
   std::vector<Vector<d>> points;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
@@ -73,37 +77,41 @@ template <std::size_t d> std::vector<Index> sort_along_curve(Triangulation<d> &m
       used.push_back(static_cast<Index>(v));
       points.push_back(mesh.vertices[v].x);
     }
-  std::vector<Index> order = hilbert_order<d>(points);
+  std::vector<Index> order = hilbert_order<d>(points, threads, shift);
   for (Index &k : order)
     k = used[static_cast<std::size_t>(k)];
   const std::vector<Index> rank = inverse(order, mesh.vertices.size());
-  permute(mesh.vertices, order);
-  permute(mesh.feature, order);
-  permute(mesh.background_cell, order);
+  permute(mesh.vertices, order, threads);
+  permute(mesh.feature, order, threads);
+  permute(mesh.background_cell, order, threads);
   mesh.vertex_cell.assign(order.size(), none);
-  for (Cell<d> &cell : mesh.cells)
-    if (cell[0] != none)
-      for (Index &v : cell)
-        v = rank[static_cast<std::size_t>(v)];
+  parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      if (mesh.cells[c][0] != none)
+        for (Index &v : mesh.cells[c])
+          v = rank[static_cast<std::size_t>(v)];
+  });
 
   const std::vector<Index> cell_order = cells_by_first_vertex(mesh);
   const std::vector<Index> cell_rank = inverse(cell_order, mesh.cells.size());
-  permute(mesh.cells, cell_order);
-  permute(mesh.neighbours, cell_order);
-  permute(mesh.constraints, cell_order);
-  permute(mesh.region, cell_order);
+  permute(mesh.cells, cell_order, threads);
+  permute(mesh.neighbours, cell_order, threads);
+  permute(mesh.constraints, cell_order, threads);
+  permute(mesh.region, cell_order, threads);
   mesh.free_cells.clear();
-  for (Neighbours<d> &around : mesh.neighbours)
-    for (HalfFacet &h : around)
-      if (h.exists())
-        h = HalfFacet(cell_rank[static_cast<std::size_t>(h.cell())], h.facet());
+  parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      for (HalfFacet &h : mesh.neighbours[c])
+        if (h.exists())
+          h = HalfFacet(cell_rank[static_cast<std::size_t>(h.cell())], h.facet());
+  });
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (Index v : mesh.cells[c])
       mesh.vertex_cell[static_cast<std::size_t>(v)] = static_cast<Index>(c);
   return rank;
 }
 
-template std::vector<Index> sort_along_curve<2>(Triangulation<2> &);
-template std::vector<Index> sort_along_curve<3>(Triangulation<3> &);
+template std::vector<Index> sort_along_curve<2>(Triangulation<2> &, int, double);
+template std::vector<Index> sort_along_curve<3>(Triangulation<3> &, int, double);
 
 } // namespace anistar

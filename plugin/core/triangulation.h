@@ -9,6 +9,17 @@
 
 namespace anistar {
 
+/// Places for new vertices and cells that a mesh keeps for one thread: its arrays must
+/// not grow while others read them.
+struct Slots {
+  Index vertex = 0, last_vertex = 0, cell = 0, last_cell = 0;
+
+  /// For one vertex in the inside: it makes two more cells.
+  [[nodiscard]] bool has_room() const {
+    return vertex < last_vertex && cell + 2 <= last_cell;
+  }
+};
+
 /// Cells, their neighbours, the constraints on their facets and their region tags. A
 /// facet with a constraint is part of the boundary or of an interface; the constraint
 /// is an index into a table that the geometry keeps.
@@ -28,14 +39,23 @@ template <std::size_t d> struct Triangulation {
   std::vector<Index> free_cells;
 
   [[nodiscard]] Index add_vertex(const Vertex<d> &vertex, Index feature_dimension,
-                                 Index background) {
+                                 Index background, Slots *slots = nullptr) {
+    if (slots) {
+      const auto v = static_cast<std::size_t>(slots->vertex);
+      vertices[v] = vertex;
+      feature[v] = feature_dimension;
+      background_cell[v] = background;
+      return slots->vertex++;
+    }
     vertices.push_back(vertex);
     feature.push_back(feature_dimension);
     vertex_cell.push_back(none);
     background_cell.push_back(background);
     return static_cast<Index>(vertices.size()) - 1;
   }
-  [[nodiscard]] Index add_cell() {
+  [[nodiscard]] Index add_cell(Slots *slots = nullptr) {
+    if (slots)
+      return slots->cell++;
     if (!free_cells.empty()) {
       const Index cell = free_cells.back();
       free_cells.pop_back();
@@ -46,6 +66,25 @@ template <std::size_t d> struct Triangulation {
     constraints.emplace_back();
     region.push_back(none);
     return static_cast<Index>(cells.size()) - 1;
+  }
+  /// Room for so many new vertices in the inside. What is not used counts as removed,
+  /// and sort_along_curve drops it.
+  [[nodiscard]] Slots make_slots(std::size_t n_new) {
+    const auto n = static_cast<Index>(vertices.size() + n_new);
+    const auto m = static_cast<Index>(cells.size() + 2 * n_new);
+    const Slots slots{static_cast<Index>(vertices.size()), n,
+                      static_cast<Index>(cells.size()), m};
+    vertices.resize(static_cast<std::size_t>(n));
+    feature.resize(static_cast<std::size_t>(n), interior);
+    vertex_cell.resize(static_cast<std::size_t>(n), none);
+    background_cell.resize(static_cast<std::size_t>(n), none);
+    Cell<d> free;
+    free.fill(none);
+    cells.resize(static_cast<std::size_t>(m), free);
+    neighbours.resize(static_cast<std::size_t>(m));
+    constraints.resize(static_cast<std::size_t>(m), free);
+    region.resize(static_cast<std::size_t>(m), none);
+    return slots;
   }
   void free_cell(Index c) {
     at(c)[0] = none;
@@ -108,6 +147,9 @@ void star_of(const Triangulation<2> &mesh, Index v, std::vector<HalfFacet> &star
 
 /// Renumbers vertices along a Hilbert curve and cells by their first vertex; drops what
 /// is no longer used. @returns the new index of every old vertex, `none` if dropped.
-template <std::size_t d> std::vector<Index> sort_along_curve(Triangulation<d> &mesh);
+/// @param shift see hilbert_order
+template <std::size_t d>
+std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads = 1,
+                                    double shift = 0);
 
 } // namespace anistar

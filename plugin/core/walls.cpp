@@ -70,7 +70,8 @@ bool Walls::is_clear(const Curve &curve, const Vector<2> &a, Index a_index,
   const auto blocks = [&](Index entry) {
     if (std::find(replaced.begin(), replaced.end(), entry) != replaced.end())
       return false;
-    const auto &[c, t0, t1, v0, v1] = edges_[static_cast<std::size_t>(entry)];
+    const Index v0 = edges_[static_cast<std::size_t>(entry)].v0;
+    const Index v1 = edges_[static_cast<std::size_t>(entry)].v1;
     const bool has0 = v0 == corner[0] || v1 == corner[0];
     const bool has1 = v0 == corner[1] || v1 == corner[1];
     if (has0 && has1)

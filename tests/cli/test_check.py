@@ -81,12 +81,17 @@ def test_figures_and_pictures_need_a_metric(folder, capsys, flag):
     assert f"{flag.split()[0]} needs --metric" in capsys.readouterr().err
 
 
-def test_a_3d_mesh_is_measured_but_not_certified(folder, capsys):
-    mesh = cube(1)
+@pytest.mark.parametrize(("off", "code"), [(0.0, 0), (0.5, 1)])
+def test_a_3d_mesh_is_certified_too(folder, capsys, off, code):
+    mesh = cube(2)
     write("cube.mesh", mesh)
-    write_metric("cube.sol", mesh, np.tile(np.eye(3), (mesh.n_points, 1, 1)))
-    assert check("cube.mesh --metric cube.sol --json -o cube.vtu") == 0
-    assert "certificate" not in json.loads(capsys.readouterr().out)
-    assert set(read("cube.vtu")[1]) == {"longest_edge", "quality", "distortion"}
+    M = np.eye(3) + off * (np.ones((3, 3)) - np.eye(3))
+    write_metric("cube.sol", mesh, np.tile(M, (mesh.n_points, 1, 1)))
+    assert check("cube.mesh --metric cube.sol --json -o cube.vtu") == code
+    report = json.loads(capsys.readouterr().out)["certificate"]
+    assert report["is_certified"] == (code == 0)
+    fields = read("cube.vtu")[1]
+    assert set(fields) == {"longest_edge", "quality", "distortion", "inconsistent"}
+    assert fields["inconsistent"].values.sum() == 48 - report["simplices"][0]
     assert check("cube.mesh --metric cube.sol --picture cube.png") == 2
     assert "--picture is for 2D meshes" in capsys.readouterr().err

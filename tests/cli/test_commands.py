@@ -96,6 +96,26 @@ def test_metric_bounds_the_distortion_by_each_law(folder, capsys):
     assert report_of(capsys)["distortion"]["max"] > 0.31
 
 
+def test_metric_takes_the_recovery_and_its_options_under_both_names(folder, capsys):
+    words = "metric in.vtu --field u --target-complexity 300 -o m.sol --json --interfaces off"
+    found = []
+    for flags in ("--recovery zz", "--method zz", "--recovery l2 --recovery-mass consistent"):
+        assert run(f"{words} {flags} --recovery-boundary one_sided --noise 0") == 0
+        found.append(report_of(capsys)["stages"][0]["remark"])
+    assert found[0] == found[1] == "zz at 121 of 121 points"
+    assert found[2] == "l2 at 121 of 121 points"
+    assert run(words, "--interfaces", "some") != 0
+    assert "must be on or off, not 'some'" in capsys.readouterr().err
+
+
+def test_metric_of_cell_means_is_made_when_they_are_asked_for(folder, capsys):
+    mesh, _ = read("in.vtu")
+    means = layer(mesh.points[mesh.cells].mean(axis=1))
+    write("cells.vtu", mesh, {"u": Field(means, "cells")})
+    assert run("metric cells.vtu --field u --target-complexity 300 -o m.sol --json") == 0
+    assert report_of(capsys)["complexity"] == pytest.approx(300, rel=1e-3)
+
+
 def test_metric_reaches_the_complexity_and_prints_the_ledger(folder, capsys):
     assert run("metric in.vtu --field u --target-complexity 300 -o m.sol") == 0
     mesh = read("in.vtu")[0]

@@ -1,3 +1,6 @@
+import os
+import signal
+
 import numpy as np
 import pytest
 from metric_meshes import box, from_arrays, is_at_least, random_metrics, stretched, tanh_layer
@@ -156,6 +159,23 @@ def test_the_round_limit_stops_the_queue_and_is_told(caplog, monkeypatch):
     M = layer_metric(mesh)
     assert is_at_least(metric.graded(mesh, M), M)
     assert "gradation stopped after 2 rounds" in caplog.text
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are POSIX")
+def test_a_signal_interrupts_a_long_gradation():
+    def interrupt(signum, frame):
+        raise KeyboardInterrupt
+
+    mesh = box(30, 3, 0.2)
+    M = layer_metric(mesh, 3e4)
+    before = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        with pytest.raises(KeyboardInterrupt):
+            metric.graded(mesh, M, factor=1.001, model="metric")  # takes many seconds
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def test_needles_that_no_determinant_can_see_are_graded_all_the_same():

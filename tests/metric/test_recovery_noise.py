@@ -92,8 +92,8 @@ def test_noise_can_be_given():
 def test_the_ledger_mentions_noise_and_interfaces():
     mesh = box(32, 2, 0.15)
     mesh.cell_tags = (mesh.points[mesh.cells].mean(axis=1)[:, 0] > 0.5).astype(np.int32)
-    u, _ = tanh_layer(mesh.points, 6.0)
-    u = u + noise_on(mesh.points, 1e-4)
+    u, _ = tanh_layer(mesh.points, 3.0)
+    u = u + noise_on(mesh.points, 1e-3)
     _, ledger = from_fields(mesh, {"u": u}, MetricOptions(target_complexity=500.0))
     assert "l2 at 0 of 1089 points, 33 on interfaces, noise " in ledger.stages[0].remark
 

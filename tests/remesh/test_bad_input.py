@@ -55,11 +55,9 @@ def test_a_metric_of_the_wrong_shape_is_refused(M, message):
         remesh(square(4), M)
 
 
-def test_a_3d_mesh_is_refused():
-    mesh = cube(1)
-    M = np.broadcast_to(np.eye(3), (mesh.n_points, 3, 3))
-    with pytest.raises(ValueError, match="remesh works on 2D meshes; this one has dimension 3"):
-        remesh(mesh, M)
+def test_a_geometry_of_another_dimension_is_refused():
+    with pytest.raises(ValueError, match="the geometry has dimension 3, the mesh 2"):
+        remesh(square(4), uniform(square(4), 0.3), geometry=cube(1))
 
 
 def test_a_frozen_tag_that_no_facet_has_is_named():

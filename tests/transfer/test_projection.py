@@ -265,6 +265,49 @@ def test_a_mass_matrix_that_cannot_be_solved_is_an_error():
         mass(square(2)).solved(np.full(9, np.nan))
 
 
+@pytest.mark.parametrize("method", PROJECTIONS)
+def test_an_interface_that_is_curved_keeps_constants_of_each_region(method):
+    source, target = (
+        Mesh(
+            points=mesh.points,
+            cells=mesh.cells,
+            cell_tags=(np.linalg.norm(centroids(mesh), axis=1) > 0.75).astype(int),
+        )
+        for mesh in (annulus(4), annulus(6))
+    )
+    values = np.where(source.cell_tags == 1, 5.0, 2.0)
+    fields = {"q": Field(values, "cells"), "one": np.ones(source.n_points)}
+    done = transfer(source, fields, target, method=method, outside="nearest")
+    assert np.abs(done.fields["q"].values - np.where(target.cell_tags == 1, 5.0, 2.0)).max() < 1e-12
+    assert np.abs(done.fields["one"] - 1).max() < 1e-12
+    assert done.report.coverage.cells > 0
+
+
+def test_regions_without_points_of_their_own_keep_their_integrals_where_they_can():
+    source, target = (
+        Mesh(
+            points=mesh.points, cells=mesh.cells, cell_tags=(4 * centroids(mesh)[:, 0]).astype(int)
+        )
+        for mesh in (square(4), square(8))
+    )
+    report = transfer(source, every_kind(source, smooth), target, method="conservative").report
+    for change in report.changes.values():
+        assert set(change.defects) == {0, 1, 2, 3}
+        assert max(abs(row[0]) for row in change.defects.values()) < 1e-13
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("unit", [2.0**-200, 2.0**130])
+@pytest.mark.parametrize("method", PROJECTIONS)
+def test_the_unit_of_length_does_not_matter(dim, unit, method):
+    meshes = [jittered(dim, 2, 0), jittered(dim, 3, 1)]
+    scaled = [Mesh(points=unit * mesh.points, cells=mesh.cells) for mesh in meshes]
+    plain = transfer(meshes[0], every_kind(meshes[0], smooth), meshes[1], method=method).fields
+    other = transfer(scaled[0], every_kind(meshes[0], smooth), scaled[1], method=method).fields
+    for name, field in plain.items():
+        assert np.abs(other[name].values - field.values).max() < 1e-13
+
+
 def test_region_tags_that_only_one_mesh_has_make_it_one_region():
     source, target = two_regions(4), square(4)
     report = transfer(source, every_kind(source, smooth), target, method="conservative").report

@@ -6,6 +6,7 @@ from meshes import annulus, cube, square, two_regions
 from pairs import flattened, jittered, linear, pairs, scattered, with_regions
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
+from anistar import _core
 from anistar.mesh import Mesh
 from anistar.topology import cell_volumes
 from anistar.transfer import supermesh
@@ -138,6 +139,30 @@ def test_cells_meet_only_those_of_their_region():
     made = supermesh(source, target).cells.tocoo()
     rows, columns = made.coords
     assert np.array_equal(target.cell_tags[rows], source.cell_tags[columns])
+
+
+@pytest.mark.parametrize(
+    ("region", "message"), [(1, "the source has no region 1"), (-2, "region -2 is negative")]
+)
+def test_a_region_that_the_core_cannot_find_is_named(region, message):
+    mesh = square(2)
+    zeros, other = np.zeros(8, np.int32), np.full(8, region, np.int32)
+    points, cells = np.array(mesh.points), np.array(mesh.cells)
+    with pytest.raises(ValueError, match=message):
+        _core.supermesh2(
+            points,
+            cells,
+            zeros,
+            points,
+            cells,
+            other,
+            np.zeros((0, 0)),
+            points=True,
+            pairs=True,
+            blocks=False,
+            threads=1,
+            callback=None,
+        )
 
 
 def test_regions_are_ignored_when_the_tags_differ():

@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--metric",
         metavar="FILE",
-        help="metric at the points; in 2D, the stars are certified for it",
+        help="metric at the points; the stars are certified for it",
     )
     parser.add_argument(
         "--reference", metavar="FILE", help="mesh with the same domain, tags and names"
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     M = certificate = None
     if arguments.metric:
         M = check_metric(read_metric(arguments.metric, mesh), dim=mesh.dim)
-        certificate = certify(mesh, M) if mesh.dim == 2 else None
+        certificate = certify(mesh, M)
         _write(arguments, mesh, M, certificate)
     _show(arguments, found, problems, quality(mesh, M).as_dict(), certificate)
     is_good = certificate is None or certificate.is_certified
@@ -75,12 +75,12 @@ def _check_targets(arguments: argparse.Namespace) -> None:
 
 
 def _write(
-    arguments: argparse.Namespace, mesh: Mesh, M: Float, certificate: Certificate | None
+    arguments: argparse.Namespace, mesh: Mesh, M: Float, certificate: Certificate
 ) -> None:
     if arguments.output:
         write(arguments.output, mesh, cell_arrays(mesh, M, certificate))
     if arguments.picture:
-        if certificate is None:
+        if mesh.dim != 2:
             raise ValueError(f"--picture is for 2D meshes; this one has dimension {mesh.dim}")
         # matplotlib is an extra, needed for pictures only
         from ..pictures import certificate_picture

@@ -124,7 +124,7 @@ def _combined(
         restrict_anisotropy_first=options.restrict_anisotropy_first,
     )
     complexities["bounded"] = complexity(mesh, M)
-    law = options.gradation_for(mesh.dim)
+    law = options.growth_law(mesh.dim)
     M = graded(mesh, M, factor=law.factor, model=law.model, max_distortion=law.max_distortion)
     complexities["graded"] = complexity(mesh, M)
     return M, Combined(complexities, complexities["graded"], estimate(mesh, M))

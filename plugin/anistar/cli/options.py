@@ -132,7 +132,7 @@ _REMESH: dict[str, tuple[Any, str]] = {
         "pure: only that, from the boundary alone",
     ),
     "seed": (int, "of the random moves"),
-    "threads": (int, "for the certificate"),
+    "threads": (int, "that work side by side; the result does not depend on it"),
 }
 
 _OPTIONAL_VALUE = {"until_consistent": True, "restrict_anisotropy_first": True}

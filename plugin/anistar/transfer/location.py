@@ -48,8 +48,11 @@ class Places:
 def locator(mesh: Mesh, cells: Int | None = None) -> Any:
     """Return the compiled point locator of the mesh, or of some of its cells."""
     build = _core.Locator2 if mesh.dim == 2 else _core.Locator3
-    chosen = mesh.cells if cells is None else mesh.cells[cells]
-    return build(np.ascontiguousarray(mesh.points), np.ascontiguousarray(chosen))
+    if cells is None or len(cells) == mesh.n_cells:
+        return build(np.ascontiguousarray(mesh.points), np.ascontiguousarray(mesh.cells))
+    used, numbers = np.unique(mesh.cells[cells], return_inverse=True)
+    chosen = numbers.reshape(len(cells), -1).astype(np.int32)
+    return build(np.ascontiguousarray(mesh.points[used]), chosen)
 
 
 def located_points(source: Mesh, target: Mesh, options: TransferOptions) -> Places:

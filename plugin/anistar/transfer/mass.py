@@ -13,6 +13,7 @@ from scipy.sparse.linalg import LinearOperator, cg
 from ..errors import MeshingError
 from ..mesh import Mesh
 from ..topology import Float, Int, cell_volumes
+from .columns import power_of_two
 
 # Scaled by its diagonal the mass matrix has a condition number of at most d + 2 on any mesh
 # (Wathen, Realistic eigenvalue bounds for the Galerkin mass matrix, IMA J. Numer. Anal. 7
@@ -68,8 +69,12 @@ class Mass:
         # Scaled by the diagonal, so that small cells count as much as large ones; from the
         # lumped solution, which is exact for constants.
         scaled, scale = self._scaled
-        right = scale * load
-        start = load / self.lumped / scale
+        size = power_of_two(load)
+        right = scale * (load / size)
+        # Squares of volumes must stay in range whatever the unit of length.
+        unit = power_of_two(right)
+        right = right / unit
+        start = load / size / self.lumped / scale / unit
         found, stopped = cg(scaled, right, x0=start, rtol=RESIDUAL, maxiter=MAX_STEPS)
         if stopped:
             residual = np.linalg.norm(scaled @ found - right)
@@ -77,7 +82,7 @@ class Mass:
                 raise MeshingError(
                     f"the mass matrix was not solved in {MAX_STEPS} steps: residual {residual:.1e}"
                 )
-        return np.asarray(scale * found)
+        return np.asarray(scale * (unit * found) * size)
 
     @cached_property
     def _scaled(self) -> tuple[csr_array, Float]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import pinvh
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
@@ -38,14 +39,14 @@ class Loaded:
 
 
 class Projector:
-    """The L2 projection between two meshes with the integral of every region as a constraint.
+    """The L2 projection between two meshes, corrected to keep the integral of every region.
 
-    Minimises the L2 distance among the fields whose integral over each region is that of the
-    source. For continuous P1 fields, whose hat functions straddle interfaces, the plain Galerkin
-    projection [1] keeps the total only; the constraints add one vector for each region,
-    and for a single region nothing but round-off. As they are satisfied by a small dense solve,
-    the integrals do not depend on the tolerance of the iteration. Regions that the two meshes do
-    not cover alike are constrained together, to the integral that the target sees.
+    The Galerkin projection [1] of continuous P1 fields, whose hat functions straddle interfaces,
+    keeps the total integral only. What then is missing over each region is added by the change
+    that is smallest in the lumped L2 norm: one vector for each region, 1 inside it; for a single
+    region it adds nothing but round-off. As a small dense system gives the amounts, the integrals
+    do not depend on the tolerance of the iteration. Regions that the two meshes do not cover
+    alike are corrected together, to the integral that the target sees.
 
     References
     ----------
@@ -57,7 +58,7 @@ class Projector:
     def __init__(self, overlap: Supermesh) -> None:
         self.overlap = overlap
         self._functionals: dict[str, tuple[csr_array, csr_array]] = {}
-        self._corrections: dict[str, tuple[Float, Float]] = {}
+        self._corrections: dict[str, tuple[csr_array, Float]] = {}
 
     @cached_property
     def mass(self) -> Mass:
@@ -111,25 +112,37 @@ class Projector:
         rest = field.load.sum(axis=0) - kept.sum(axis=0)
         return np.concatenate([kept, rest[None]])
 
-    def corrections(self, on: str) -> tuple[Float, Float]:
-        """Return the (n, r) vectors that change one integral each, and their (r, r) integrals."""
+    def corrections(self, on: str) -> tuple[csr_array, Float]:
+        """Return the (n, r) vectors that correct integrals, and their amounts (r, r) for each."""
         if on not in self._corrections:
             after = self.functionals(on)[1]
-            vectors = self.solved(after.toarray().T, on)
-            self._corrections[on] = vectors, np.asarray(after @ vectors)
+            vectors = csr_array(diags_array(1 / self.lumped_mass(on)) @ after.T)
+            gram = (after @ vectors).toarray()
+            # Scaled, so that small regions count as much as large ones; a pseudo-inverse, because
+            # regions without points of their own cannot all be corrected.
+            scale = 1 / np.sqrt(np.diag(gram))
+            inverse = pinvh(scale[:, None] * gram * scale)
+            self._corrections[on] = vectors, scale[:, None] * inverse * scale
         return self._corrections[on]
+
+    def lumped_mass(self, on: str) -> Float:
+        """Return the integrals of the target's basis functions."""
+        if on == "points":
+            return self.mass.lumped
+        width = 1 if on == "cells" else self.overlap.target.dim + 1
+        return np.repeat(self.volumes / width, width)
 
     def projected(self, field: Loaded) -> Float:
         """Return the (n_target, c) projection of a field."""
         values = self.solved(field.load, field.on)
-        vectors, gram = self.corrections(field.on)
+        vectors, amounts = self.corrections(field.on)
         defect = self.integrals(field) - self.functionals(field.on)[1] @ values
-        return np.asarray(values + vectors @ np.linalg.solve(gram, defect))
+        return np.asarray(values + vectors @ (amounts @ defect))
 
     def operator(self, on: str) -> LinearOperator:
         """Return the projection as a linear operator with its adjoint."""
         mixed, (before, after) = self.overlap.matrix(on), self.functionals(on)
-        vectors, gram = self.corrections(on)
+        vectors, amounts = self.corrections(on)
         count = before.shape[0]
 
         def direct(values: Float) -> Float:
@@ -137,7 +150,7 @@ class Projector:
 
         def adjoint(values: Float) -> Float:
             flat = values.reshape(-1, 1)
-            multiplier = np.linalg.solve(gram.T, vectors.T @ flat)
+            multiplier = amounts.T @ (vectors.T @ flat)
             rest = multiplier[count:].sum()
             through = self.solved(flat - after.T @ multiplier, on) + rest
             return np.asarray(mixed.T @ through + before.T @ (multiplier[:count] - rest)).ravel()
@@ -150,8 +163,8 @@ class Projector:
             raise ValueError(
                 "the low-order operator exists for points and cells, not for cell_nodes"
             )
-        scale = 1 / (self.volumes if on == "cells" else self.mass.lumped)
-        return aslinearoperator(csr_array(diags_array(scale) @ self.overlap.matrix(on)))
+        scaling = diags_array(1 / self.lumped_mass(on))
+        return aslinearoperator(csr_array(scaling @ self.overlap.matrix(on)))
 
 
 def integrals_matrix(mesh: Mesh, groups: Int, count: int, on: str) -> csr_array:

@@ -13,5 +13,7 @@ void bind_nearest(nanobind::module_ &module);
 void bind_remesh(nanobind::module_ &module);
 void bind_supermesh(nanobind::module_ &module);
 void bind_vertex_graph(nanobind::module_ &module);
+void bind_surface(nanobind::module_ &module);
+void bind_volume_remesh(nanobind::module_ &module);
 
 } // namespace anistar::bindings

@@ -10,4 +10,6 @@ NB_MODULE(_core, module) {
   anistar::bindings::bind_remesh(module);
   anistar::bindings::bind_supermesh(module);
   anistar::bindings::bind_vertex_graph(module);
+  anistar::bindings::bind_surface(module);
+  anistar::bindings::bind_volume_remesh(module);
 }

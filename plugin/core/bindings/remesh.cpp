@@ -1,6 +1,7 @@
 #include "../remesh.h"
 #include "bind.h"
 #include "geometry.h"
+#include "report.h"
 
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/map.h>
@@ -10,51 +11,6 @@
 
 namespace anistar::bindings {
 namespace {
-
-/// Points (n, d) and full tensors (n, d, d) of vertices.
-template <std::size_t d>
-void put_vertices(nb::dict &result, const std::vector<Vertex<d>> &vertices) {
-  std::vector<double> points, metric;
-  points.reserve(vertices.size() * d);
-  metric.reserve(vertices.size() * d * d);
-  for (const Vertex<d> &v : vertices) {
-    points.insert(points.end(), v.x.data(), v.x.data() + d);
-    for (std::size_t i = 0; i < d; ++i)
-      for (std::size_t j = 0; j < d; ++j)
-        metric.push_back(v.M(i, j));
-  }
-  result["points"] = owned(std::move(points), {vertices.size(), d});
-  result["metric"] = owned(std::move(metric), {vertices.size(), d, d});
-}
-
-[[nodiscard]] nb::dict as_dict(const Statistics &statistics) {
-  const std::span bins(Statistics::length_bins);
-  nb::dict out;
-  out["edges"] = statistics.n_edges;
-  out["edge_unit"] = statistics.unit_fraction;
-  out["edge_min"] = statistics.length_min;
-  out["edge_mean"] = statistics.length_mean;
-  out["edge_max"] = statistics.length_max;
-  out["edge_bins"] = std::vector<double>(bins.begin(), bins.end());
-  out["edge_histogram"] = statistics.length_histogram;
-  out["q_min"] = statistics.quality_min;
-  out["q_mean"] = statistics.quality_mean;
-  out["q_histogram"] = statistics.quality_histogram;
-  return out;
-}
-
-/// Tells Python about progress and lets it interrupt: Ctrl-C, or an exception in the
-/// user's callback, unwinds the core.
-/// A handle, not an object: it is copied and destroyed while the GIL is released.
-Monitor::Progress progress_of(nb::handle callback) {
-  return [callback](const std::string &phase, double fraction) {
-    nb::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0)
-      throw nb::python_error();
-    if (!callback.is_none())
-      callback(phase, fraction);
-  };
-}
 
 Projection projection_of(nb::handle project) {
   if (project.is_none())
@@ -88,7 +44,7 @@ ConsistencyMode consistency_mode(const std::string &name) {
           value("max_growth")};
 }
 
-[[nodiscard]] nb::dict as_dict(const ConsistencyCounts &counts) {
+[[nodiscard]] nb::dict consistency_dict(const ConsistencyCounts &counts) {
   nb::dict out;
   out["size"] = counts.size;
   out["radius_edge"] = counts.radius_edge;
@@ -140,7 +96,8 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
   RemeshResult out;
   {
     nb::gil_scoped_release release;
-    const Background<2> background(points_of<2>(points), cells_of<2>(cells), tensors);
+    const Background<2> background(points_of<2>(points), cells_of<2>(cells), tensors,
+                                   threads);
     out = remesh(background, geometry, projection, settings, progress_of(callback));
   }
   nb::dict result;
@@ -157,13 +114,8 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
     result["star_ok"] = nb::none();
   }
   result["agreement"] = out.agreement;
-  result["consistency"] = as_dict(out.consistency);
-  nb::dict quantiles;
-  quantiles["p50"] = out.distortion.p50;
-  quantiles["p90"] = out.distortion.p90;
-  quantiles["p99"] = out.distortion.p99;
-  quantiles["max"] = out.distortion.maximum;
-  result["distortion"] = quantiles;
+  result["consistency"] = consistency_dict(out.consistency);
+  result["distortion"] = as_dict(out.distortion);
   result["statistics"] = as_dict(out.statistics);
   result["counts"] = out.counts;
   result["seconds"] = out.seconds;

@@ -30,6 +30,9 @@ RegionMesh<d> region_mesh(const Array2<double> &points, const Array2<Index> &cel
                           const Array1<Index> &regions) {
   if (regions.shape(0) != cells.shape(0))
     throw std::invalid_argument("a region is needed for every cell");
+  for (const Index region : indices_of(regions))
+    if (region < 0)
+      throw std::invalid_argument("region " + std::to_string(region) + " is negative");
   return {points_of<d>(points), cells_of<d>(cells), indices_of(regions)};
 }
 

@@ -1,0 +1,183 @@
+"""The demo in 3D: adapt to a spherical front in a cube, and compare with uniform meshes."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .adapt import AdaptOptions
+from .interpolation_error import l2_error
+from .loop import LoopOptions, Step, adapt_loop
+from .mesh import Mesh
+from .metric import MetricOptions
+from .remesh import remesh
+from .report import attributes, write_json
+from .series import write_series
+from .study import observed_order
+
+Floats = NDArray[np.float64]
+Progress = Callable[[str], object]
+
+COMPLEXITIES = (500.0, 1000.0, 2000.0, 4000.0)
+REPEATS = 2
+
+# The front: a sphere of this radius around the origin, this steep.
+RADIUS, STEEPNESS = 0.7, 30.0
+BOXES = 8
+
+
+@dataclass(frozen=True, slots=True)
+class VolumeRow:
+    """The errors at one complexity.
+
+    Attributes
+    ----------
+    complexity : float
+        Target complexity of both meshes.
+    adapted_points, uniform_points : int
+        Points of the adapted and the uniform mesh.
+    adapted_error, uniform_error : float
+        L2 norm of the interpolation error.
+    """
+
+    complexity: float
+    adapted_points: int
+    adapted_error: float
+    uniform_points: int
+    uniform_error: float
+
+    @property
+    def gain(self) -> float:
+        """How many times smaller the error is on the adapted mesh."""
+        return self.uniform_error / self.adapted_error
+
+
+@dataclass(frozen=True, eq=False)
+class VolumeDemo:
+    """What the demo did.
+
+    Attributes
+    ----------
+    rows : tuple of VolumeRow
+        One for each complexity.
+    adapted_order, uniform_order : float
+        Least-squares slope of ``-log(error)`` against ``log(points) / 3``.
+    files : tuple of Path
+        What was written.
+    seconds : float
+        Wall time.
+    """
+
+    rows: tuple[VolumeRow, ...]
+    adapted_order: float
+    uniform_order: float
+    files: tuple[Path, ...]
+    seconds: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins only; the keys are those of the attributes."""
+        return attributes(self)
+
+
+def front(points: Floats) -> Floats:
+    """Return the function of the demo at (n, 3) points."""
+    return np.asarray(np.tanh(STEEPNESS * (np.linalg.norm(points, axis=1) - RADIUS)))
+
+
+def unit_cube(n: int = BOXES) -> Mesh:
+    """Return the unit cube of ``n**3`` boxes, six tetrahedra each."""
+    axis = np.linspace(0.0, 1.0, n + 1)
+    grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)
+    at = np.arange((n + 1) ** 3).reshape((n + 1,) * 3)
+    cells = []
+    for path in ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)):
+        step = np.zeros((4, 3), dtype=int)
+        for row, direction in enumerate(path, start=1):
+            step[row:, direction] = 1
+        corners = [at[i : n + i, j : n + j, k : n + k].ravel() for i, j, k in step]
+        is_odd = path in ((0, 2, 1), (2, 1, 0), (1, 0, 2))
+        order = (0, 1, 3, 2) if is_odd else (0, 1, 2, 3)
+        cells.append(np.stack([corners[v] for v in order], axis=1))
+    return Mesh(points=grid.reshape(-1, 3), cells=np.concatenate(cells))
+
+
+def stages(complexities: Sequence[float] = COMPLEXITIES) -> int:
+    """Return how often the demo calls `progress`."""
+    return 1 + REPEATS * len(complexities) + len(complexities) + 1
+
+
+def run_volume_demo(
+    folder: str | os.PathLike[str],
+    *,
+    complexities: Sequence[float] = COMPLEXITIES,
+    progress: Progress = lambda stage: None,
+) -> VolumeDemo:
+    """Run the demo and leave meshes, fields and the report in a folder.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it is not there.
+    complexities : sequence of float
+        Growing target complexities, at least two.
+    progress : callable
+        ``progress(what)`` is called after each stage.
+    """
+    started = time.perf_counter()
+    place = Path(folder)
+    place.mkdir(parents=True, exist_ok=True)
+    coarse = unit_cube()
+    targets = tuple(c for c in complexities for _ in range(REPEATS))
+    loop = adapt_loop(
+        lambda mesh, fields: {"u": front(mesh.points)},
+        coarse,
+        LoopOptions(
+            adapt=AdaptOptions(metric=MetricOptions()),
+            complexities=targets,
+            max_iterations=len(targets),
+        ),
+        callback=lambda step: progress(f"adapted to {step.complexity or 0:g}") and None,
+    )
+    steps = loop.steps[REPEATS::REPEATS]
+    rows = []
+    for step in steps:
+        rows.append(_row(step, coarse))
+        progress(f"uniform at {step.complexity:g}")
+    files = write_series(
+        place / "front.pvd", ((step.mesh, step.fields) for step in (loop.steps[0], *steps))
+    )
+    progress("files")
+    demo = VolumeDemo(
+        rows=tuple(rows),
+        adapted_order=observed_order(*_columns(rows, "adapted")),
+        uniform_order=observed_order(*_columns(rows, "uniform")),
+        files=(*files, place / "report.json"),
+        seconds=time.perf_counter() - started,
+    )
+    write_json(place / "report.json", demo)
+    return demo
+
+
+def _row(step: Step, coarse: Mesh) -> VolumeRow:
+    complexity = float(step.complexity or 0.0)
+    M = np.tile(complexity ** (2.0 / 3.0) * np.eye(3), (coarse.n_points, 1, 1))
+    uniform = remesh(coarse, M).mesh
+    return VolumeRow(
+        complexity=complexity,
+        adapted_points=step.mesh.n_points,
+        adapted_error=l2_error(step.mesh, front(step.mesh.points), front),
+        uniform_points=uniform.n_points,
+        uniform_error=l2_error(uniform, front(uniform.points), front),
+    )
+
+
+def _columns(rows: Sequence[VolumeRow], kind: str) -> tuple[list[int], list[float], int]:
+    counts = [getattr(row, f"{kind}_points") for row in rows]
+    return counts, [getattr(row, f"{kind}_error") for row in rows], 3

@@ -1,0 +1,39 @@
+#include "surface_shape.h"
+
+#include "smooth_surface.h"
+
+#include <algorithm>
+
+namespace anistar {
+
+SurfaceShape::SurfaceShape(std::vector<Patch> patches, std::vector<SurfaceCurve> curves,
+                           const SurfaceInput &geometry, SurfaceProjection projection)
+    : patches_(std::move(patches)), curves_(std::move(curves)),
+      projection_(std::move(projection)) {
+  const bool is_flat =
+      std::all_of(patches_.begin(), patches_.end(),
+                  [](const Patch &patch) { return patch.is_planar; }) &&
+      std::all_of(curves_.begin(), curves_.end(),
+                  [](const SurfaceCurve &curve) { return curve.is_straight; });
+  if (!is_flat)
+    geometry_ = std::make_shared<const SmoothSurface>(geometry);
+}
+
+Vector<3> SurfaceShape::on_patch(Index p, const Vector<3> &x) const {
+  const Patch &here = patch(p);
+  if (here.is_planar)
+    return x - here.normal * here.normal.dot(x - here.origin);
+  const CurvedPieces *pieces = geometry_->surface(here.tag);
+  const Vector<3> near = pieces ? pieces->project(x).x : x;
+  return projection_ ? projection_(near, here.tag) : near;
+}
+
+Vector<3> SurfaceShape::on_curve(Index c, const Vector<3> &x) const {
+  const SurfaceCurve &here = curve(c);
+  if (here.is_straight)
+    return here.origin + here.direction * here.direction.dot(x - here.origin);
+  const CurvedPieces *pieces = geometry_->ridge(here.is_given, here.tag);
+  return pieces ? pieces->project(x).x : x;
+}
+
+} // namespace anistar

@@ -1,0 +1,104 @@
+#pragma once
+// The passes over a volume mesh: split, swap, the vertex pass, and repair.
+
+#include "cavity_operator.h"
+#include "monitor.h"
+
+#include <map>
+#include <string>
+
+namespace anistar {
+
+/// Operations made.
+struct VolumeCounts {
+  std::size_t splits = 0, collapses = 0, edge_swaps = 0, face_swaps = 0, moves = 0,
+              insertions = 0, repairs = 0;
+};
+
+/// Which cells and vertices a pass looks at: those that changed since it last ran.
+enum class Pass { split, swap, vertex };
+
+struct SplitRule {
+  double longest;     ///< edges above are split
+  double floor;       ///< of the quality
+  double closest = 0; ///< nearest a new vertex may come to the others around the edge
+  double share = 0;   ///< of the old quality that is enough too (see Acceptance)
+};
+
+struct VertexRule {
+  double shortest, longest; ///< edges below are collapsed unless that makes some above
+  bool reinsert;
+  double collapse_floor = .15;
+  double reinsertion_floor = .5;
+};
+
+/// Everything the passes share.
+class VolumePasses {
+public:
+  VolumePasses(Volume &volume, Monitor &monitor, double hausdorff_number,
+               std::uint64_t seed)
+      : volume_(volume), operator_(volume), monitor_(monitor),
+        hausdorff_number_(hausdorff_number), seed_(seed) {}
+
+  /// Splits the longest edge of every cell that is too long, and edges that stray from
+  /// their curved surface or ridge; @returns how many.
+  std::size_t split(const SplitRule &rule);
+  /// Edge removals and facet swaps at cells below `quality`, where they improve.
+  void swap(double quality);
+  /// Collapse, move and metric-Delaunay re-insertion of every vertex.
+  void vertices(const VertexRule &rule);
+  /// Swaps, collapses and splits at cells below `quality`, whatever improves.
+  void repair(double quality);
+  /// Makes a pass look at everything the next time.
+  void look_everywhere(Pass pass) { last_[static_cast<std::size_t>(pass)] = 0; }
+  [[nodiscard]] double longest_edge() const;
+  [[nodiscard]] const VolumeCounts &counts() const { return counts_; }
+  [[nodiscard]] bool is_full() const { return is_full_; }
+  [[nodiscard]] bool is_stopped() const {
+    return monitor_.reason() != StopReason::finished;
+  }
+
+private:
+  Volume &volume_;
+  CavityOperator operator_;
+  Monitor &monitor_;
+  double hausdorff_number_; ///< of curved surfaces and ridges, relative to an edge
+  std::uint64_t seed_;
+  VolumeCounts counts_;
+  std::array<std::uint32_t, 3> last_{};
+  bool is_full_ = false; ///< a split had to be left out for want of vertices
+  std::vector<Index> star_, ring_;
+  Shell shell_;
+  StarShapes shapes_;
+
+  [[nodiscard]] std::uint32_t begin(Pass pass);
+  [[nodiscard]] bool go_on(std::size_t k, std::size_t n);
+
+  [[nodiscard]] bool split_edge(Index cell, Index a, Index b, const SplitRule &rule,
+                                const Acceptance &acceptance);
+  [[nodiscard]] Index new_vertex(const Vector<3> &x, Index dimension, Index lies_on);
+
+  [[nodiscard]] bool swap_cell(Index c);
+  [[nodiscard]] bool remove_edge(Index c, Index a, Index b);
+  [[nodiscard]] bool is_ring_better(std::size_t apex, double threshold) const;
+
+  [[nodiscard]] bool split_curved(Index c);
+  [[nodiscard]] bool is_off_curve(Index curve, const Vector<3> &a,
+                                  const Vector<3> &b) const;
+
+  [[nodiscard]] bool may_collapse(Index v, Index u) const;
+  [[nodiscard]] bool follows_curve(Index v, Index u) const;
+  [[nodiscard]] bool has_ridge(const Cell<3> &cell) const;
+  void note_surface_neighbours(Index v);
+  [[nodiscard]] bool collapse(Index v, Index u, const Acceptance &acceptance);
+  [[nodiscard]] bool collapse_shortest(Index v, const VertexRule &rule);
+  [[nodiscard]] double star_quality() const;
+  void move(Index v);
+  [[nodiscard]] Vector<3> ideal_step(Index v, const Matrix<3> &L, double &worst,
+                                     double &sum);
+  [[nodiscard]] bool try_move(Index v, const Vector<3> &step, double worst, double sum);
+  void reinsert(Index v, double floor);
+  [[nodiscard]] bool repair_cell(Index c);
+};
+
+} // namespace anistar

@@ -1,0 +1,40 @@
+#pragma once
+// remesh in 3D: a mesh, a metric field and a geometry in; a mesh with unit edges out.
+
+#include "statistics.h"
+#include "volume_passes.h"
+#include "volume_start.h"
+
+namespace anistar {
+
+struct VolumeSettings {
+  double hausdorff_number = .1; ///< of an edge, relative to its length
+  std::size_t max_vertices = static_cast<std::size_t>(-1);
+  double max_seconds = std::numeric_limits<double>::infinity();
+  std::uint64_t seed = 0;
+};
+
+/// The new mesh as flat arrays, and what happened.
+struct VolumeResult {
+  std::vector<Vertex<3>> vertices;
+  std::vector<Cell<3>> cells;
+  std::vector<Index> cell_tags;
+  std::vector<Facet<3>> facets; ///< boundary facets look outward
+  std::vector<Index> facet_tags;
+  std::vector<std::array<Index, 2>> edges; ///< the ridges that were given
+  std::vector<Index> edge_tags;
+  Statistics statistics;
+  DistortionQuantiles distortion;
+  std::map<std::string, double> counts;
+  std::map<std::string, double> seconds; ///< per phase
+  StopReason reason = StopReason::finished;
+};
+
+/// @param background the input mesh with its metric
+/// @throws std::invalid_argument, and what the progress callback throws
+[[nodiscard]] VolumeResult
+remesh_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>> metric,
+              const SurfaceInput &geometry, SurfaceProjection projection,
+              const VolumeSettings &settings, Monitor::Progress progress);
+
+} // namespace anistar

@@ -1,0 +1,158 @@
+#include "volume_passes.h"
+
+namespace anistar {
+namespace {
+
+/// The six edges of a cell.
+constexpr std::size_t cell_edges[6][2] = {{0, 1}, {0, 2}, {0, 3},
+                                          {1, 2}, {1, 3}, {2, 3}};
+
+/// A new vertex stands where the two halves have equal length when the size grows
+/// geometrically along the edge, but not too near an end.
+constexpr double nearest_to_end = .375;
+
+/// Edges beyond this length are split even when the new vertex comes nearer to others
+/// than the rule says.
+constexpr double very_long = 3, relaxed = .4;
+
+} // namespace
+
+std::uint32_t VolumePasses::begin(Pass pass) {
+  std::uint32_t &last = last_[static_cast<std::size_t>(pass)];
+  const std::uint32_t since = last;
+  last = ++volume_.clock;
+  return since;
+}
+
+bool VolumePasses::go_on(std::size_t k, std::size_t n) {
+  return monitor_.keep_going(0, static_cast<double>(k) / static_cast<double>(n));
+}
+
+double VolumePasses::longest_edge() const {
+  const Triangulation<3> &mesh = volume_.mesh;
+  double longest = 0;
+  for (const Cell<3> &cell : mesh.cells)
+    if (cell[0] != none)
+      for (const auto &[i, j] : cell_edges)
+        longest =
+            std::max(longest, fast_length(mesh.vertex(cell[i]), mesh.vertex(cell[j])));
+  return longest;
+}
+
+std::size_t VolumePasses::split(const SplitRule &rule) {
+  const std::uint32_t since = begin(Pass::split);
+  const Triangulation<3> &mesh = volume_.mesh;
+  const std::size_t n = mesh.cells.size();
+  std::size_t done = 0;
+  for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
+    const auto c = static_cast<Index>(k);
+    if (!mesh.is_alive(c) || volume_.cell_clock[k] < since)
+      continue;
+    double longest = rule.longest;
+    Index a = none, b = none;
+    for (const auto &[i, j] : cell_edges) {
+      const Index u = mesh.at(c)[i], w = mesh.at(c)[j];
+      const double l = fast_length(mesh.vertex(u), mesh.vertex(w));
+      if (l > longest) {
+        longest = l;
+        a = u;
+        b = w;
+      }
+    }
+    if (a == none) {
+      done += volume_.is_walled(c) && split_curved(c);
+      continue;
+    }
+    SplitRule local = rule;
+    if (longest > very_long)
+      local.closest *= relaxed;
+    done += split_edge(c, a, b, local, {rule.floor, 1e-4, 0, 0, rule.share});
+  }
+  counts_.splits += done;
+  return done;
+}
+
+bool VolumePasses::is_off_curve(Index curve, const Vector<3> &a,
+                                const Vector<3> &b) const {
+  return volume_.surface.deviation(1, curve, a, b) > hausdorff_number_;
+}
+
+/// Splits an edge of a cell that strays from the curved feature it lies on.
+bool VolumePasses::split_curved(Index c) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const Cell<3> cell = mesh.at(c);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Index patch = mesh.constraint(HalfFacet(c, i));
+    if (patch == none)
+      continue;
+    const Facet<3> t = facet_of<3>(cell, i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = t[k], b = t[(k + 1) % 3];
+      const Index ridge = volume_.feature(a) <= 1 && volume_.feature(b) <= 1
+                              ? volume_.ridges.find(a, b)
+                              : none;
+      const double deviation =
+          ridge != none
+              ? volume_.surface.deviation(1, volume_.ridges.at(ridge).curve,
+                                          mesh.vertex(a).x, mesh.vertex(b).x)
+              : volume_.surface.deviation(2, patch, mesh.vertex(a).x, mesh.vertex(b).x);
+      if (deviation > hausdorff_number_ && split_edge(c, a, b, {0, 0}, {1e-4}))
+        return true;
+    }
+  }
+  return false;
+}
+
+Index VolumePasses::new_vertex(const Vector<3> &x, Index dimension, Index lies_on) {
+  // the hint is that of the last vertex of the shell, which is near
+  Index at = volume_.mesh.background_cell[static_cast<std::size_t>(shell_.a)];
+  const Vertex<3> vertex = volume_.background.vertex(x, at);
+  return volume_.add_vertex(vertex, dimension, lies_on, at);
+}
+
+bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rule,
+                              const Acceptance &acceptance) {
+  if (!monitor_.has_room(volume_.n_vertices())) {
+    is_full_ = true;
+    return false;
+  }
+  if (!shell_of(volume_.mesh, cell, a, b, shell_))
+    return false;
+  Index dimension = 3, lies_on = none;
+  const EdgeWalls walls = walls_at(volume_, shell_);
+  for (std::size_t k = 0; k < std::min(walls.n, walls.patch.size()); ++k)
+    if (volume_.surface.patch(walls.patch[k]).is_frozen)
+      return false;
+  const Index ridge = volume_.feature(a) <= 1 && volume_.feature(b) <= 1
+                          ? volume_.ridges.find(a, b)
+                          : none;
+  if (ridge != none) {
+    dimension = 1;
+    lies_on = volume_.ridges.at(ridge).curve;
+  } else if (walls.n > 0) {
+    dimension = 2;
+    lies_on = walls.patch[0];
+  }
+  const Vertex<3> &p = volume_.mesh.vertex(a), &q = volume_.mesh.vertex(b);
+  const Vector<3> e = q.x - p.x;
+  const double la = std::sqrt(quadratic<3>(p.M, e)),
+               lb = std::sqrt(quadratic<3>(q.M, e));
+  const double s =
+      std::clamp(.5 * (.5 + lb / (la + lb)), nearest_to_end, 1 - nearest_to_end);
+  const Vector<3> x = volume_.surface.place(dimension, lies_on, p.x + s * e);
+  const Index v = new_vertex(x, dimension, lies_on);
+  bool is_clear = true;
+  if (rule.closest > 0)
+    for (std::size_t k = 0; k < shell_.n_ring() && is_clear; ++k)
+      is_clear = fast_length(volume_.mesh.vertex(shell_.ring[k]),
+                             volume_.mesh.vertex(v)) >= rule.closest;
+  if (!is_clear || !operator_.replace(shell_.all(), v, {a, b}, acceptance)) {
+    volume_.remove_vertex(v);
+    return false;
+  }
+  if (ridge != none)
+    volume_.ridges.split(a, b, v);
+  return true;
+}
+
+} // namespace anistar

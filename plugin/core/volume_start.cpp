@@ -1,0 +1,112 @@
+#include "volume_start.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace anistar {
+namespace {
+
+/// Finds the patch of a facet by its vertices.
+class PatchTable {
+public:
+  PatchTable(std::span<const Facet<3>> facets, const std::vector<Index> &patch,
+             std::size_t n_points)
+      : first_(n_points + 1, 0), entries_(facets.size()) {
+    for (const Facet<3> &facet : facets)
+      ++first_[lowest(facet) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t f = 0; f < facets.size(); ++f)
+      entries_[next[lowest(facets[f])]++] = {sorted(facets[f]), patch[f], false};
+  }
+
+  Index take(const Facet<3> &facet) {
+    const std::size_t v = lowest(facet);
+    if (first_[v] == first_[v + 1])
+      return none;
+    const Facet<3> key = sorted(facet);
+    for (std::size_t k = first_[v]; k < first_[v + 1]; ++k)
+      if (entries_[k].key == key) {
+        entries_[k].is_used = true;
+        return entries_[k].patch;
+      }
+    return none;
+  }
+  [[nodiscard]] bool is_used_up() const {
+    return std::all_of(entries_.begin(), entries_.end(),
+                       [](const Entry &entry) { return entry.is_used; });
+  }
+
+private:
+  struct Entry {
+    Facet<3> key;
+    Index patch;
+    bool is_used;
+  };
+  std::vector<std::size_t> first_;
+  std::vector<Entry> entries_;
+
+  static std::size_t lowest(const Facet<3> &facet) {
+    return static_cast<std::size_t>(*std::min_element(facet.begin(), facet.end()));
+  }
+  static Facet<3> sorted(Facet<3> facet) {
+    std::sort(facet.begin(), facet.end());
+    return facet;
+  }
+};
+
+void add_cells(Volume &volume, const VolumeInput &input,
+               const std::vector<Index> &facet_patch) {
+  Triangulation<3> &mesh = volume.mesh;
+  const std::size_t n = input.cells.size();
+  mesh.cells.assign(input.cells.begin(), input.cells.end());
+  mesh.region.assign(input.cell_tags.begin(), input.cell_tags.end());
+  mesh.neighbours = volume.background.locator().neighbours();
+  mesh.constraints.assign(n, {none, none, none, none});
+  volume.quality.resize(n);
+  volume.walled.assign(n, 0);
+  volume.cell_clock.assign(n, 0);
+  PatchTable table(input.surface.facets, facet_patch, input.surface.points.size());
+  for (std::size_t c = 0; c < n; ++c)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index patch = table.take(facet_of<3>(mesh.cells[c], i));
+      mesh.constraints[c][i] = patch;
+      if (patch != none)
+        volume.walled[c] = 1;
+      else if (!mesh.neighbours[c][i].exists())
+        throw std::invalid_argument("a boundary facet of cell " + std::to_string(c) +
+                                    " is not among the facets");
+      mesh.vertex_cell[static_cast<std::size_t>(mesh.cells[c][i])] =
+          static_cast<Index>(c);
+    }
+  if (!table.is_used_up())
+    throw std::invalid_argument("a facet is not one of a cell");
+}
+
+} // namespace
+
+Volume make_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>> metric,
+                   const Background<3> &background, const SurfaceInput &geometry,
+                   SurfaceProjection projection) {
+  Features features = find_features(input.surface);
+  Volume volume(background,
+                SurfaceShape(std::move(features.patches), std::move(features.curves),
+                             geometry, std::move(projection)));
+  const std::size_t n = input.surface.points.size();
+  for (std::size_t v = 0; v < n; ++v)
+    volume.add_vertex(make_vertex<3>(input.surface.points[v], metric[v]),
+                      features.dimension[v], features.support[v], none);
+  for (const RidgeSegment &ridge : features.ridges)
+    volume.ridges.add(ridge.ends[0], ridge.ends[1], ridge.curve);
+  add_cells(volume, input, features.facet_patch);
+  for (std::size_t v = 0; v < n; ++v) {
+    const Index cell = volume.mesh.vertex_cell[v];
+    if (cell == none)
+      volume.free_vertices.push_back(static_cast<Index>(v));
+    volume.mesh.background_cell[v] = cell; // the mesh is its own background
+  }
+  renumber(volume);
+  return volume;
+}
+
+} // namespace anistar

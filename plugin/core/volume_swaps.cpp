@@ -1,0 +1,87 @@
+#include "volume_passes.h"
+
+namespace anistar {
+namespace {
+
+/// Longer rings gain nothing and cost the square of their length.
+constexpr std::size_t longest_ring = 9;
+constexpr double swap_gain = 1e-3;
+
+} // namespace
+
+void VolumePasses::swap(double quality) {
+  const std::uint32_t since = begin(Pass::swap);
+  const std::size_t n = volume_.mesh.cells.size();
+  for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
+    const auto c = static_cast<Index>(k);
+    if (volume_.mesh.is_alive(c) && volume_.quality_of(c) <= quality &&
+        volume_.cell_clock[k] >= since)
+      (void)swap_cell(c);
+  }
+}
+
+bool VolumePasses::swap_cell(Index c) {
+  const Cell<3> cell = volume_.mesh.at(c);
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j)
+      if (remove_edge(c, cell[i], cell[j])) {
+        ++counts_.edge_swaps;
+        return true;
+      }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const HalfFacet h(c, i), beyond = volume_.mesh.opposite(h);
+    if (!beyond.exists() || volume_.mesh.constraint(h) != none)
+      continue;
+    const std::array<Index, 2> both{c, beyond.cell()};
+    if (operator_.replace(both, cell[i], {none, none}, improvement(swap_gain))) {
+      ++counts_.face_swaps;
+      return true;
+    }
+  }
+  return false;
+}
+
+bool VolumePasses::is_ring_better(std::size_t apex, double threshold) const {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const Vertex<3> &a = mesh.vertex(shell_.a), &b = mesh.vertex(shell_.b);
+  const std::size_t n = shell_.n_ring();
+  const Vertex<3> &r = mesh.vertex(shell_.ring[apex]);
+  for (std::size_t k = 1; k + 1 < n; ++k) {
+    const std::size_t i = (apex + k) % n, j = (apex + k + 1) % n;
+    if (!shell_.is_closed && j == 0)
+      continue; // an open ring has a gap there
+    const Vertex<3> &c = mesh.vertex(shell_.ring[i]), &e = mesh.vertex(shell_.ring[j]);
+    if (shape_quality(a, r, c, e) < threshold || shape_quality(r, b, c, e) < threshold)
+      return false;
+  }
+  return true;
+}
+
+bool VolumePasses::remove_edge(Index c, Index a, Index b) {
+  if (!shell_of(volume_.mesh, c, a, b, shell_))
+    return false;
+  const std::size_t n = shell_.n_ring();
+  if (n < 3 || n > longest_ring)
+    return false;
+  const EdgeWalls walls = walls_at(volume_, shell_);
+  if (volume_.feature(a) <= 1 && volume_.feature(b) <= 1 &&
+      volume_.ridges.find(a, b) != none)
+    return false;
+  if (walls.n != 0 && (walls.n != 2 || walls.patch[0] != walls.patch[1]))
+    return false;
+  double worst = 1;
+  for (Index cell : shell_.all())
+    worst = std::min(worst, volume_.quality_of(cell));
+  for (std::size_t k = 0; k < n; ++k) {
+    if (walls.n == 2 && k != walls.position[0] && k != walls.position[1])
+      continue; // the new facets of the surface must meet at the apex
+    if (!is_ring_better(k, worst + swap_gain))
+      continue;
+    if (operator_.replace(shell_.all(), shell_.ring[k], {a, b},
+                          improvement(swap_gain, hausdorff_number_)))
+      return true;
+  }
+  return false;
+}
+
+} // namespace anistar
