@@ -139,15 +139,14 @@ def test_the_adapt_filter_makes_the_metric_itself_where_there_is_none():
     assert 2 < second.n_points / first.n_points < 4
 
 
-def test_a_filter_that_fails_says_why_and_has_no_output(capfd):
+def test_a_filter_that_fails_says_why_and_has_no_output():
     mesh = square(4)
     adapt = vtk.vtkAnistarAdapt()
     adapt.SetInputDataObject(vtk.to_vtk(mesh, front(mesh)))
     adapt.set_fields("missing")
     adapt.Update()
-    assert "missing" in adapt.error
+    assert "unknown field 'missing'" in adapt.error
     assert adapt.GetOutputDataObject(0).GetNumberOfCells() == 0
-    assert "unknown field 'missing'" in capfd.readouterr().err
 
 
 def test_unknown_options_are_refused_and_change_nothing():

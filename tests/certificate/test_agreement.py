@@ -90,7 +90,7 @@ def test_algorithm_2_ends_consistent_and_counts_vertices_by_rule():
 
 
 def test_the_pure_mode_reproduces_the_paper_from_the_boundary_alone():
-    mesh, M = adapted()
+    mesh, M = adapted(1.4)
     done = remesh(mesh, M, RemeshOptions(until_consistent="pure"))
     counts = done.report.consistency
     assert counts["stop_reason"] == "consistent"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from meshes import cube
-from shapes import ball, bent_block, samples
+from smooth_shapes import ball, bent_block, samples
 
 from anistar import remesh, validate
 from anistar.curvature import curvature_metric, smooth_surface, surface_curvature
