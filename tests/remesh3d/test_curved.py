@@ -53,8 +53,9 @@ def test_a_ball_keeps_its_surface_and_its_volume(h, tolerance):
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     heights = np.einsum("ij,ij->i", normals, corners[:, 0]) / np.linalg.norm(normals, axis=1)
     inner = heights.min()
-    assert radius.max() < 1 + 1e-12
-    assert radius.min() > inner - 1e-12
+    assert inner < 0.99  # the facets of the geometry; its smooth surface is nearer
+    assert radius.max() < 1 + 3e-4
+    assert radius.min() > 1 - 3e-4
     assert done.report.statistics["edge_unit"] > 0.9
 
 
@@ -77,9 +78,7 @@ def test_the_rim_of_a_cylinder_stays_on_its_plane_and_its_circle():
     rim = done.mesh.points[rim_of(done.mesh)]
     assert np.isin(rim[:, 2], [0.0, 1.0]).all()
     radius = np.hypot(rim[:, 0], rim[:, 1])
-    first = mesh.points[rim_of(mesh)]
-    assert radius.max() < 1 + 1e-12
-    assert radius.min() > np.cos(np.pi / len(first)) - 0.05
+    np.testing.assert_allclose(radius, 1, atol=1e-6)
 
 
 def test_a_coarse_metric_does_not_flatten_a_curve():
