@@ -74,9 +74,7 @@ def _check_targets(arguments: argparse.Namespace) -> None:
             check(path)
 
 
-def _write(
-    arguments: argparse.Namespace, mesh: Mesh, M: Float, certificate: Certificate
-) -> None:
+def _write(arguments: argparse.Namespace, mesh: Mesh, M: Float, certificate: Certificate) -> None:
     if arguments.output:
         write(arguments.output, mesh, cell_arrays(mesh, M, certificate))
     if arguments.picture:
