@@ -118,7 +118,7 @@ def normalised_space_time(
         The mesh of each instant; it may be the same one.
     hessians : sequence of ndarray (n_i, d, d)
         The Hessian of each instant, or over each interval the integral (L1 in time) or the
-        maximum of |H|.
+        maximum of ``|H|``.
     target_complexity : float
         Space-time complexity C: vertices times time steps.
     time_steps : array_like (k,), optional
