@@ -3,8 +3,6 @@
 namespace anistar {
 namespace {
 
-/// New facets of a curved surface may turn by this much against the old ones.
-constexpr double smallest_cosine = .5;
 /// Relative change of volume that round-off makes where planes are kept.
 constexpr double volume_tolerance = 1e-9;
 /// Bits of a table entry that hold the port; the others are the epoch.
@@ -23,6 +21,8 @@ bool CavityOperator::replace(std::span<const Index> cells, Index apex,
   if (has_walls_ && (!add_rim(acceptance.hausdorff_number) || !keeps_shape(cells)))
     return false;
   if (!match() || (has_walls_ && (!constrain() || !separates_regions())))
+    return false;
+  if (!surface_.empty() && !keeps_link())
     return false;
   commit(cells);
   return true;
@@ -124,7 +124,7 @@ bool CavityOperator::add_rim(double hausdorff_number) {
     const Vector<3> &a = mesh.vertex(edge.ends[0]).x;
     const Vector<3> normal = (mesh.vertex(edge.ends[1]).x - a).cross(x - a);
     const Patch &patch = volume_.surface.patch(edge.patch);
-    const double cosine = patch.is_planar ? 0 : smallest_cosine;
+    const double cosine = patch.is_planar ? 0 : smallest_facet_cosine;
     if (!(normal.dot(edge.normal) > cosine * normal.norm() * edge.normal.norm()) ||
         patch.is_frozen)
       return false;
@@ -286,6 +286,39 @@ bool CavityOperator::constrain() {
     }
     if (!found)
       return false;
+  }
+  return true;
+}
+
+/// Where surfaces are curved their sheets may come together: a new edge at the apex must
+/// not be there already, on cells outside of the cavity (the link condition).
+bool CavityOperator::keeps_link() {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const auto local = [&](Index v) {
+    return static_cast<std::size_t>(local_of_[static_cast<std::size_t>(v)]);
+  };
+  joined_.assign(local_.size(), 0);
+  around_.clear();
+  for (const Outer &outer : outers_) {
+    if (outer.kind != Kind::at_apex)
+      continue;
+    for (Index v : outer.v)
+      if (v != apex_)
+        joined_[local(v)] = 1;
+    if (outer.beyond.exists() && volume_.mark_cell(outer.beyond.cell()))
+      around_.push_back(outer.beyond.cell());
+  }
+  for (std::size_t k = 0; k < around_.size(); ++k) {
+    const Cell<3> &cell = mesh.at(around_[k]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (cell[i] == apex_)
+        continue;
+      if (volume_.is_marked_vertex(cell[i]) && !joined_[local(cell[i])])
+        return false;
+      const HalfFacet beyond = mesh.opposite(HalfFacet(around_[k], i));
+      if (beyond.exists() && volume_.mark_cell(beyond.cell()))
+        around_.push_back(beyond.cell());
+    }
   }
   return true;
 }

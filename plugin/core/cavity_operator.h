@@ -10,6 +10,9 @@
 
 namespace anistar {
 
+/// New facets of a curved surface may turn by this much against the old ones.
+inline constexpr double smallest_facet_cosine = .5;
+
 /// What the new cells must be like. The worst of them must reach `floor`, or be better
 /// than the worst old cell by `gain`, whichever asks less: so what is stuck below the
 /// floor can be repaired step by step.
@@ -91,6 +94,8 @@ private:
   std::vector<std::uint32_t> table_; ///< directed edges: epoch and port
   std::uint32_t epoch_ = 0;
   std::vector<Index> local_, local_of_;
+  std::vector<Index> around_;        ///< cells of the apex outside of the cavity
+  std::vector<std::uint8_t> joined_; ///< local vertices that keep their edge to it
   bool has_walls_ = false;
 
   [[nodiscard]] bool is_lost(const std::array<Index, 3> &facet) const;
@@ -107,6 +112,7 @@ private:
   [[nodiscard]] bool match_port(Index outer, std::size_t slot);
   [[nodiscard]] bool constrain();
   [[nodiscard]] bool separates_regions() const;
+  [[nodiscard]] bool keeps_link();
   [[nodiscard]] Index local_index(Index v);
   [[nodiscard]] Index region_at(const Port &port) const;
   [[nodiscard]] HalfFacet half_of(const Port &port) const;

@@ -90,6 +90,7 @@ private:
   [[nodiscard]] bool follows_curve(Index v, Index u) const;
   [[nodiscard]] bool has_ridge(const Cell<3> &cell) const;
   void note_surface_neighbours(Index v);
+  [[nodiscard]] bool keeps_surfaces(Index v, const Vector<3> &x) const;
   [[nodiscard]] bool collapse(Index v, Index u, const Acceptance &acceptance);
   [[nodiscard]] bool collapse_shortest(Index v, const VertexRule &rule);
   [[nodiscard]] double star_quality() const;

@@ -166,12 +166,46 @@ Vector<3> VolumePasses::ideal_step(Index v, const Matrix<3> &L, double &worst,
   return weight > 0 ? Vector<3>(step / weight) : Vector<3>(Vector<3>::Zero());
 }
 
+/// Whether the facets of surfaces at v keep their side, and stay near curved ones, when v
+/// goes to x. @pre star_ is the star of v.
+bool VolumePasses::keeps_surfaces(Index v, const Vector<3> &x) const {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const Vector<3> &from = mesh.vertex(v).x;
+  for (Index c : star_) {
+    if (!volume_.is_walled(c))
+      continue;
+    const std::size_t at = mesh.local_index(c, v);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index k = i == at ? none : mesh.constraint(HalfFacet(c, i));
+      if (k == none)
+        continue;
+      std::array<Index, 2> ends{none, none}; // of the facet, besides v
+      for (std::size_t j = 0; j < 4; ++j)
+        if (j != i && j != at)
+          ends[ends[0] == none ? 0 : 1] = mesh.at(c)[j];
+      const Vector<3> &a = mesh.vertex(ends[0]).x, &b = mesh.vertex(ends[1]).x;
+      const Vector<3> before = (b - a).cross(from - a), after = (b - a).cross(x - a);
+      const Patch &patch = volume_.surface.patch(k);
+      const double cosine = patch.is_planar ? 0 : smallest_facet_cosine;
+      if (!(before.dot(after) > cosine * before.norm() * after.norm()))
+        return false;
+      if (!patch.is_planar && hausdorff_number_ > 0)
+        for (const Vector<3> *end : {&a, &b})
+          if (volume_.surface.deviation(2, k, *end, x) > hausdorff_number_)
+            return false;
+    }
+  }
+  return true;
+}
+
 /// @param step in coordinates of space
 bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double sum) {
   const auto i = static_cast<std::size_t>(v);
   Vertex<3> &here = volume_.mesh.vertices[i];
   const Vector<3> x =
       volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
+  if (volume_.feature(v) != 3 && !keeps_surfaces(v, x))
+    return false;
   Index at = volume_.mesh.background_cell[i];
   const Vertex<3> moved = volume_.background.vertex(x, at);
   shapes_.evaluate(moved);

@@ -89,3 +89,13 @@ def test_a_coarse_metric_does_not_flatten_a_curve():
         assert validate(done, reference=mesh, tolerance=0.3) == []
     assert len(rim_of(fine)) > len(rim_of(coarse))
     assert len(rim_of(fine)) >= 14
+
+
+def test_a_metric_coarser_than_a_body_does_not_fold_its_surface():
+    """Where edges are as long as a body is wide, its two sides must not trade places."""
+    mesh = cylinder()
+    M = uniform(mesh, 2.5)
+    done = remesh(mesh, M)
+    again = remesh(done.mesh, uniform(done.mesh, 2.5), geometry=mesh)
+    for one in (done, again):
+        assert validate(one.mesh, reference=mesh, tolerance=0.08) == []
