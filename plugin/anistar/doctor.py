@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .adapt import AdaptOptions, adapt
+from .adapters import dolfinx_wheel
 from .mesh import Mesh
 from .metric import MetricOptions
 from .report import attributes
@@ -75,6 +76,7 @@ def diagnose() -> Diagnosis:
     """Look at everything that anistar needs; nothing is raised."""
     python = Finding("python", "ok", f"{platform.python_version()} on {platform.platform()}")
     findings = [python, *map(_required, REQUIRED), _tried("adaptation", _small_adaptation)]
+    dolfinx_wheel.make_importable()
     findings += [_optional(name, extra) for name, extra in OPTIONAL.items()]
     return Diagnosis(tuple(findings))
 

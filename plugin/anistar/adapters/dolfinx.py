@@ -5,8 +5,6 @@ dolfinx renumbers points and cells; everything here goes through its maps back t
 
 from __future__ import annotations
 
-import contextlib
-import importlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,10 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..mesh import Mesh
 from ..topology import RowKeys, cell_determinants
+from . import dolfinx_wheel
 
-# The wheel that carries dolfinx and petsc4py makes them importable only once it is imported.
-with contextlib.suppress(ImportError):
-    importlib.import_module("dolfinx_solver")
+dolfinx_wheel.make_importable()
 try:
     import basix.ufl
     import dolfinx.fem

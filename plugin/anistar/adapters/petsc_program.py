@@ -7,10 +7,11 @@ is ``python PROGRAM.py ARGUMENTS -dm_adaptor anistar`` with anistar registered.
 
 from __future__ import annotations
 
-import contextlib
 import importlib
 import runpy
 import sys
+
+from . import dolfinx_wheel
 
 
 def main() -> None:
@@ -19,8 +20,7 @@ def main() -> None:
         raise SystemExit("usage: python -m anistar.adapters.petsc_program PROGRAM.py [ARGUMENTS]")
     sys.argv = sys.argv[1:]
     # PETSc reads its options when petsc4py is initialised, which importing the adapter does.
-    with contextlib.suppress(ImportError):
-        importlib.import_module("dolfinx_solver")
+    dolfinx_wheel.make_importable()
     importlib.import_module("petsc4py").init([*sys.argv, "-dm_adaptor", "anistar"])
     importlib.import_module("anistar.adapters.petsc").register()
     runpy.run_path(sys.argv[0], run_name="__main__")

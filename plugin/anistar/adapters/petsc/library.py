@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import ctypes
-import importlib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-# dolfinx's wheel carries petsc4py, and makes it importable only once it is imported itself.
-with contextlib.suppress(ImportError):
-    importlib.import_module("dolfinx_solver")
+from .. import dolfinx_wheel
+
+dolfinx_wheel.make_importable()
 try:
     from petsc4py import PETSc as PETSc
 except ImportError as error:
