@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from . import dolfinx_wheel
 from .adapt import AdaptOptions, adapt
-from .adapters import dolfinx_wheel
 from .mesh import Mesh
 from .metric import MetricOptions
 from .report import attributes
