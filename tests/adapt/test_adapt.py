@@ -3,12 +3,12 @@ import json
 
 import numpy as np
 import pytest
-from meshes import annulus, slit, square, two_regions
+from meshes import annulus, cube, slit, square, two_regions
 
 from anistar.adapt import AdaptOptions, adapt
 from anistar.fields import Field
 from anistar.interpolation_error import l2_error
-from anistar.metric import MetricOptions, from_fields
+from anistar.metric import MetricOptions, estimate, from_fields
 from anistar.remesh import RemeshOptions, remesh
 from anistar.transfer import TransferOptions
 from anistar.validation import validate
@@ -259,3 +259,14 @@ def test_a_mesh_that_a_budget_stopped_is_not_made_again():
     assert validate(done.mesh) == []
     assert not done.report.remesh.converged
     assert done.report.corrections == 0
+
+
+def test_in_3d_the_count_is_met_and_the_estimate_is_near_it():
+    mesh = cube(8)
+    u = np.sin(5 * mesh.points[:, 0]) * np.sin(4 * mesh.points[:, 1] + mesh.points[:, 2])
+    asked = AdaptOptions(metric=MetricOptions(target_elements=8000))
+    done = adapt(mesh, {"u": u}, asked)
+    assert validate(done.mesh) == []
+    assert done.mesh.n_cells == pytest.approx(8000, rel=0.03)
+    expected = estimate(done.mesh, done.metric)
+    assert expected.elements == pytest.approx(done.mesh.n_cells, rel=0.15)
