@@ -171,6 +171,20 @@ def test_adapt_metric_of_petsc_calls_anistar_and_keeps_labels():
 
 
 @pytest.mark.usefixtures("adaptor")
+def test_adapt_metric_keeps_every_label_in_three_dimensions():
+    plex = completed(two_region_cube())
+    before = petsc.from_dmplex(plex)
+    metric = petsc.metric_to_vec(plex, uniform_metric(before[0], 0.2))
+    mesh, labels = petsc.from_dmplex(plex.adaptMetric(metric))
+    assert anistar.validate(mesh) == []
+    assert measures(mesh, labels) == pytest.approx(measures(*before), abs=1e-9)
+    assert {pair for pairs in labels.pairs.values() for pair in pairs} == {
+        pair for pairs in before[1].pairs.values() for pair in pairs
+    }
+    assert 150 < mesh.n_points < 500
+
+
+@pytest.mark.usefixtures("adaptor")
 def test_the_gradation_factor_of_the_dm_grades_the_metric():
     plex = petsc.to_dmplex(square(16))
     mesh, _ = petsc.from_dmplex(plex)
