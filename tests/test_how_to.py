@@ -47,6 +47,13 @@ def test_the_loop_around_a_command_leaves_what_the_page_says(folder):
     assert set(fields) == {"u"}
 
 
+def test_the_study_of_the_page_leaves_its_table_and_picture(folder):
+    _, _, study, *_ = code_blocks(PAGE, "sh")
+    assert call(study.replace("500,1000,2000", "100,200")) == 0
+    assert len(Path("study.csv").read_text().splitlines()) == 7
+    assert Path("study.png").exists()
+
+
 def test_one_adaptation_by_hand_carries_the_fields_over(folder):
     *_, adapt, check = code_blocks(PAGE, "sh")
     assert call(adapt.replace("10000", "300")) == 0

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,11 @@ from .fields import as_fields
 from .interpolation_error import ExactFunction, l2_error
 from .loop import LoopOptions, Solve, Step, adapt_loop
 from .mesh import Mesh
-from .report import as_builtin, attributes
+from .remesh import remesh
+from .report import as_builtin, attributes, write_text
+from .topology import cell_volumes
+
+BASELINES = ("uniform", "isotropic")
 
 ErrorFunction = Callable[[Mesh, dict[str, Any]], float]
 
@@ -59,15 +64,37 @@ class Study:
         P1 elements reach in L2.
     steps : tuple of Step
         The steps of the loop behind the rows.
+    baselines : dict of str to tuple of StudyRow
+        The same on other meshes of the same complexities, by kind of mesh.
     """
 
     table: tuple[StudyRow, ...]
     order: float
     steps: tuple[Step, ...]
+    baselines: dict[str, tuple[StudyRow, ...]] = field(default_factory=dict)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return JSON builtins only: `order` and `table`."""
-        return {"order": as_builtin(self.order), "table": [row.as_dict() for row in self.table]}
+        """Return JSON builtins only: `order`, `table` and `baselines`."""
+        return {
+            "order": as_builtin(self.order),
+            "table": as_builtin(self.table),
+            "baselines": as_builtin(self.baselines),
+        }
+
+    def curves(self) -> dict[str, list[tuple[int, float]]]:
+        """Return (points, error) on each kind of mesh, the adapted ones last."""
+        tables = {**self.baselines, "adapted": self.table}
+        return {kind: [(row.points, row.error) for row in rows] for kind, rows in tables.items()}
+
+    def write_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write one line for each mesh: kind, complexity, points, cells, error, order."""
+        lines = ["kind,complexity,points,cells,error,order"]
+        for kind, rows in {**self.baselines, "adapted": self.table}.items():
+            for row in rows:
+                order = "" if row.order is None else repr(row.order)
+                size = f"{row.complexity!r},{row.points},{row.cells}"
+                lines.append(f"{kind},{size},{row.error!r},{order}")
+        write_text(path, "\n".join([*lines, ""]))
 
 
 def convergence_study(
@@ -81,6 +108,7 @@ def convergence_study(
     repeats: int = 2,
     options: AdaptOptions | None = None,
     geometry: Mesh | None = None,
+    baselines: Sequence[str] = (),
 ) -> Study:
     """Measure the error on meshes adapted to growing complexities.
 
@@ -105,6 +133,9 @@ def convergence_study(
         Options of each adaptation.
     geometry : Mesh, optional
         Another mesh whose boundary is the geometry.
+    baselines : sequence of {"uniform", "isotropic"}
+        Kinds of meshes to compare with, of the same complexities: of one size everywhere, or
+        adapted in size but not in shape.
 
     Returns
     -------
@@ -113,7 +144,8 @@ def convergence_study(
     Raises
     ------
     ValueError
-        If there are fewer than two complexities, or not exactly one of `error` and `exact`.
+        If there are fewer than two complexities, not exactly one of `error` and `exact`, or an
+        unknown baseline.
     """
     if len(complexities) < 2:
         raise ValueError(f"a study needs at least 2 complexities, not {len(complexities)}")
@@ -121,17 +153,31 @@ def convergence_study(
         raise ValueError("give exactly one of error and exact")
     if repeats < 1:
         raise ValueError(f"repeats must be at least 1, not {repeats}")
+    unknown = sorted(set(baselines) - set(BASELINES))
+    if unknown:
+        raise ValueError(f"baselines are {', '.join(BASELINES)}, not {unknown[0]!r}")
     measure = error if error is not None else _error_against(exact, field)  # type: ignore[arg-type]
-    repeated = [value for value in complexities for _ in range(repeats)]
-    loop_options = LoopOptions(
-        adapt=options if options is not None else AdaptOptions(),
-        complexities=tuple(repeated),
-        max_iterations=len(repeated),
-    )
-    loop = adapt_loop(solve, mesh, loop_options, geometry=geometry)
-    steps = loop.steps[repeats::repeats]
-    errors = [float(measure(step.mesh, step.fields)) for step in steps]
-    return _study(steps, errors)
+    options = options if options is not None else AdaptOptions()
+    shape = geometry if geometry is not None else mesh
+
+    def adapted(chosen: AdaptOptions) -> tuple[Step, ...]:
+        repeated = [value for value in complexities for _ in range(repeats)]
+        loop = LoopOptions(adapt=chosen, complexities=tuple(repeated), max_iterations=len(repeated))
+        return adapt_loop(solve, mesh, loop, geometry=geometry).steps[repeats::repeats]
+
+    steps = adapted(options)
+    others: dict[str, tuple[StudyRow, ...]] = {}
+    for kind in baselines:
+        if kind == "uniform":
+            meshes = [_uniform(mesh, shape, value) for value in complexities]
+            solved = [(one, dict(solve(one, {}))) for one in meshes]
+        else:
+            round_cells = replace(options, metric=replace(options.metric, a_max=1.0))
+            solved = [(step.mesh, step.fields) for step in adapted(round_cells)]
+        others[kind] = _rows(complexities, solved, measure)
+    table = _rows(complexities, [(step.mesh, step.fields) for step in steps], measure)
+    counts, errors = [row.points for row in table], [row.error for row in table]
+    return Study(table, observed_order(counts, errors, mesh.dim), steps, others)
 
 
 def observed_order(points: Sequence[int], errors: Sequence[float], dim: int) -> float:
@@ -146,17 +192,28 @@ def observed_order(points: Sequence[int], errors: Sequence[float], dim: int) -> 
     return float(slope)
 
 
-def _study(steps: tuple[Step, ...], errors: list[float]) -> Study:
-    counts, dim = [step.mesh.n_points for step in steps], steps[0].mesh.dim
-    orders: list[float | None] = [None]
-    for k in range(1, len(steps)):
-        order = observed_order(counts[k - 1 : k + 1], errors[k - 1 : k + 1], dim)
-        orders.append(None if math.isnan(order) else order)
-    table = tuple(
-        StudyRow(float(step.complexity or 0.0), count, step.mesh.n_cells, value, order)
-        for step, count, value, order in zip(steps, counts, errors, orders, strict=True)
-    )
-    return Study(table, observed_order(counts, errors, dim), steps)
+def _uniform(mesh: Mesh, geometry: Mesh, complexity: float) -> Mesh:
+    """Return a mesh of one size everywhere."""
+    volume = cell_volumes(mesh.points, mesh.cells).sum()
+    size = np.eye(mesh.dim) * (complexity / volume) ** (2 / mesh.dim)
+    return remesh(mesh, np.tile(size, (mesh.n_points, 1, 1)), geometry=geometry).mesh
+
+
+def _rows(
+    complexities: Sequence[float],
+    solved: Sequence[tuple[Mesh, dict[str, Any]]],
+    measure: ErrorFunction,
+) -> tuple[StudyRow, ...]:
+    rows: list[StudyRow] = []
+    for complexity, (mesh, fields) in zip(complexities, solved, strict=True):
+        error, order = float(measure(mesh, fields)), math.nan
+        if rows:
+            before = rows[-1]
+            counts, errors = (before.points, mesh.n_points), (before.error, error)
+            order = observed_order(counts, errors, mesh.dim)
+        known = None if math.isnan(order) else order
+        rows.append(StudyRow(float(complexity), mesh.n_points, mesh.n_cells, error, known))
+    return tuple(rows)
 
 
 def _error_against(exact: ExactFunction, name: str | None) -> ErrorFunction:

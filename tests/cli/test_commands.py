@@ -181,6 +181,16 @@ def test_loop_drives_a_solver_that_is_a_command(folder, capsys, kind):
     assert validate(read("run/series_001.vtu")[0], read("in.vtu")[0]) == []
 
 
+def test_study_compares_with_other_meshes_in_a_table_a_file_and_a_picture(folder, capsys):
+    pytest.importorskip("matplotlib")
+    words = "study in.vtu --complexities 200,400 --repeats 1 --baselines uniform,isotropic"
+    assert run(words, "--exact", "tanh(10*(x+y-1))", "--csv", "s.csv", "--picture", "s.png") == 0
+    said = capsys.readouterr().out
+    assert all(kind in said for kind in ("uniform", "isotropic", "adapted"))
+    assert len(Path("s.csv").read_text().splitlines()) == 7
+    assert Path("s.png").stat().st_size > 10_000
+
+
 def test_study_prints_the_order_of_an_exact_solution(folder, capsys):
     exact = "tanh(20 * (x**2 + y**2 - 0.5))"
     words = "study in.vtu --complexities 400,1600 --json"

@@ -34,6 +34,26 @@ def test_an_error_function_takes_the_place_of_the_exact_solution():
     assert study.as_dict()["table"][1]["order"] == pytest.approx(2.0)
 
 
+def test_adapted_meshes_beat_isotropic_ones_and_these_beat_uniform_ones(tmp_path):
+    study = convergence_study(
+        interpolate, square(16), [400, 1600], exact=layer, baselines=["uniform", "isotropic"]
+    )
+    adapted, uniform, isotropic = (
+        rows[-1] for rows in (study.table, study.baselines["uniform"], study.baselines["isotropic"])
+    )
+    assert adapted.error < 0.7 * isotropic.error < 0.7 * uniform.error
+    for row in (uniform, isotropic):
+        assert row.points == pytest.approx(adapted.points, rel=0.15)
+    study.write_csv(tmp_path / "study.csv")
+    head, *lines = (tmp_path / "study.csv").read_text().splitlines()
+    assert head == "kind,complexity,points,cells,error,order"
+    assert [line.split(",")[0] for line in lines] == ["uniform"] * 2 + ["isotropic"] * 2 + [
+        "adapted"
+    ] * 2
+    assert float(lines[-1].split(",")[4]) == adapted.error
+    assert list(study.curves()) == ["uniform", "isotropic", "adapted"]
+
+
 def test_the_observed_order_is_that_of_a_power_law():
     points = np.array([100, 400, 1600])
     assert observed_order(points, 3.0 * points**-1.0, 2) == pytest.approx(2.0)
@@ -47,6 +67,7 @@ def test_the_observed_order_is_that_of_a_power_law():
         ({"exact": None}, "give exactly one of error and exact"),
         ({"error": lambda mesh, fields: 1.0}, "give exactly one of error and exact"),
         ({"repeats": 0}, "repeats must be at least 1, not 0"),
+        ({"baselines": ["round"]}, "baselines are uniform, isotropic, not 'round'"),
         ({"field": "w"}, r"field 'w' is none of the scalar fields \['u'\]"),
     ],
 )

@@ -11,7 +11,7 @@ from ..file_solver import FileSolver
 from ..formats import read
 from ..loop import Solve
 from ..mesh import Mesh
-from ..study import convergence_study
+from ..study import BASELINES, Study, convergence_study
 from . import console
 from .options import (
     adapt_options,
@@ -39,6 +39,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="solver that reads {mesh} and writes {solution}; without it the exact solution is "
         "interpolated",
     )
+    parser.add_argument(
+        "--baselines",
+        type=lambda text: text.split(","),
+        default=[],
+        metavar="KIND,KIND",
+        help=f"compare with other meshes: {', '.join(BASELINES)}",
+    )
+    parser.add_argument("--csv", metavar="FILE", help="write the table")
+    parser.add_argument("--picture", metavar="FILE", help="draw the error against the points")
     add_metric_options(parser)
     add_remesh_options(parser)
     add_transfer_method_option(parser)
@@ -63,11 +72,27 @@ def run(arguments: argparse.Namespace) -> int:
             exact=exact,
             repeats=arguments.repeats,
             options=adapt_options(arguments),
+            baselines=arguments.baselines,
         )
+    if arguments.csv:
+        study.write_csv(arguments.csv)
+    if arguments.picture:
+        _draw(study, arguments.picture, mesh.dim)
     if arguments.json:
         console.show_json(study)
         return 0
-    rows = [[r.complexity, r.points, r.cells, r.error, r.order] for r in study.table]
-    columns = ["complexity", "points", "cells", "L2 error", "order"]
+    tables = {**study.baselines, "adapted": study.table}
+    rows = [
+        [kind, r.complexity, r.points, r.cells, r.error, r.order]
+        for kind, table in tables.items()
+        for r in table
+    ]
+    columns = ["meshes", "complexity", "points", "cells", "L2 error", "order"]
     console.show_table(f"order {study.order:.2f}", columns, rows)
     return 0
+
+
+def _draw(study: Study, path: str, dim: int) -> None:
+    from ..pictures import convergence_picture  # matplotlib is optional
+
+    convergence_picture(path, study.curves(), order=2 / dim, label="$L^2$ error")
