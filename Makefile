@@ -1,6 +1,6 @@
 # Every target sets up what it needs first; that takes a moment only when something changed.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint types stubs check-stubs format docs sanitize sanitize-threads fuzz bench clean
+.PHONY: help setup demo test lint types stubs check-stubs format docs wheel sanitize sanitize-threads fuzz bench clean
 
 PYTHON := .venv/bin/python
 PYTEST_ARGS ?= -n auto --dist loadfile
@@ -46,6 +46,19 @@ docs: ## Build the documentation into docs/_build/html
 	@./bootstrap.sh docs
 	@$(PYTHON) -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
+
+# The shared libraries that the core needs go into the wheel. It is tried where there is nothing
+# but Python: an environment of its own, and no compiler on the path.
+wheel: ## Build a wheel that needs no compiler into dist/, and try it
+	@./bootstrap.sh wheel
+	@rm -rf build/wheel dist && mkdir -p dist
+	@$(PYTHON) -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps \
+	  --wheel-dir build/wheel .
+	@PATH="$(CURDIR)/.venv/bin:$$PATH" $(PYTHON) -m auditwheel repair --wheel-dir dist build/wheel/*.whl
+	@$(PYTHON) -m venv build/wheel/venv
+	@build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
+	@cd build/wheel && PATH=/nowhere venv/bin/anistar doctor
+	@ls dist/*.whl
 
 # The sanitized build goes beside the ordinary one. Python itself is not instrumented: the
 # run-time libraries are loaded first, and leaks, of which the interpreter is full, not counted.

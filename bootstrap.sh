@@ -5,6 +5,7 @@
 #   ./bootstrap.sh            what `make demo` and `make test` need
 #   ./bootstrap.sh docs       also what `make docs` needs
 #   ./bootstrap.sh bench      also what `make bench` needs
+#   ./bootstrap.sh wheel      also what `make wheel` needs
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -111,7 +112,7 @@ mark_done() {
 
 install_requirements() { # install_requirements NAME
   local file=requirements/$1.txt wanted
-  [ -f "$file" ] || fail "there is no $file; known: development docs bench"
+  [ -f "$file" ] || fail "there is no $file; known: development docs bench wheel"
   wanted=$(digest <"$file")
   is_done "$1" "$wanted" && return
   say "installing $file"

@@ -290,8 +290,8 @@ bool CavityOperator::constrain() {
   return true;
 }
 
-/// Where surfaces are curved their sheets may come together: a new edge at the apex must
-/// not be there already, on cells outside of the cavity (the link condition).
+/// Where surfaces are curved their sheets may come together: a new edge at the apex
+/// must not be there already, on cells outside of the cavity (the link condition).
 bool CavityOperator::keeps_link() {
   const Triangulation<3> &mesh = volume_.mesh;
   const auto local = [&](Index v) {

@@ -166,8 +166,8 @@ Vector<3> VolumePasses::ideal_step(Index v, const Matrix<3> &L, double &worst,
   return weight > 0 ? Vector<3>(step / weight) : Vector<3>(Vector<3>::Zero());
 }
 
-/// Whether the facets of surfaces at v keep their side, and stay near curved ones, when v
-/// goes to x. @pre star_ is the star of v.
+/// Whether the facets of surfaces at v keep their side, and stay near curved ones, when
+/// v goes to x. @pre star_ is the star of v.
 bool VolumePasses::keeps_surfaces(Index v, const Vector<3> &x) const {
   const Triangulation<3> &mesh = volume_.mesh;
   const Vector<3> &from = mesh.vertex(v).x;
