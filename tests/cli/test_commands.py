@@ -1,4 +1,6 @@
 import json
+import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -230,6 +232,20 @@ def test_doctor_finds_this_installation_sound(capsys):
     assert main(["doctor", "--json"]) == 0
     findings = {item["name"]: item for item in report_of(capsys)["findings"]}
     assert findings["adaptation"]["state"] == "ok"
+
+
+def test_the_command_line_needs_no_optional_package():
+    optional = ("matplotlib", "pyvista", "vtk", "vtkmodules", "skfem", "petsc4py", "ngsolve")
+    program = (
+        f"import sys; sys.modules.update(dict.fromkeys({optional}))\n"
+        "from anistar.cli import main; sys.exit(main(['doctor', '--json']))"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["findings"]
 
 
 def test_demo_prints_a_table(tmp_path, capsys):

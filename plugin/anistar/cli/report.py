@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ..html_report import write_html_report
 from . import console
 
 SUMMARY = "make one HTML page about a loop"
@@ -20,6 +19,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
+    from ..html_report import write_html_report  # matplotlib is optional
+
     path = Path(arguments.output or Path(arguments.folder) / "report.html")
     write_html_report(arguments.folder, path)
     if arguments.json:
