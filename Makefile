@@ -72,7 +72,7 @@ sanitize: setup ## Run the tests with the address and undefined-behaviour saniti
 	  LD_PRELOAD="$$(c++ -print-file-name=libasan.so) $$(c++ -print-file-name=libubsan.so)" \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q
 
-# As above, for races. Exceptions are caught in the interpreter, whose mutexes it does not see.
+# As above, for races.
 sanitize-threads: setup ## Run the tests of threads with the thread sanitizer
 	@$(PYTHON) -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
 	  --upgrade --target $(SANITIZED)/threads --config-settings build-dir=$(SANITIZED)/cmake-threads \
