@@ -10,7 +10,8 @@ from .formats import read, write
 from .loop import Loop, LoopError, LoopOptions, Step, adapt_loop
 from .mesh import Mesh
 from .metric import MetricError, MetricOptions
-from .remesh import Remeshed, RemeshOptions, remesh
+from .remesh import Remeshed, remesh
+from .remesh_options import RemeshOptions
 from .study import Study, convergence_study
 from .transfer import (
     TransferOptions,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -16,12 +16,13 @@ from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import Ledger, MetricOptions, from_fields
 from .options import require
-from .remesh import Remeshed, RemeshOptions, remesh
+from .projection import Project
+from .remesh import Remeshed, remesh
+from .remesh_options import RemeshOptions
 from .report import attributes
 from .transfer import TransferOptions, TransferReport, transfer
 
 Floats = NDArray[np.float64]
-Projection = Callable[[Floats, int], Floats]
 
 STAGES = ("metric", "remesh", "transfer")
 
@@ -157,7 +158,7 @@ def adapt(
     options: AdaptOptions | None = None,
     *,
     geometry: Mesh | None = None,
-    project: Projection | None = None,
+    project: Project | None = None,
 ) -> Adapted:
     """Adapt a mesh to its fields and carry the fields over.
 
@@ -210,7 +211,7 @@ def _to_count(
     fields: Mapping[str, Field],
     options: AdaptOptions,
     geometry: Mesh | None,
-    project: Projection | None,
+    project: Project | None,
 ) -> tuple[Ledger, Remeshed, int]:
     """Make the mesh, again where its number of elements is off, and count how often."""
     wanted = options.metric

@@ -15,14 +15,15 @@ from numpy.typing import NDArray
 from . import pictures
 from .adapt import AdaptOptions, adapt
 from .demo_problem import EPSILON, channel, solve
+from .demo_rows import DemoRow, columns_of, order_of
 from .interpolation_error import l2_norm
 from .loop import Loop, LoopOptions, Step, adapt_loop
 from .mesh import Mesh
 from .metric import MetricOptions
-from .remesh import RemeshOptions, remesh
+from .remesh import remesh
+from .remesh_options import RemeshOptions
 from .report import attributes, write_json
 from .series import write_series
-from .study import observed_order
 from .topology import cell_volumes
 from .transfer import transfer
 
@@ -45,32 +46,6 @@ CURVES = RemeshOptions(hausdorff_number=0.02)
 
 # Around the obstacle and the front of its wake.
 CLOSE_UP = (0.85, 1.65, 0.42, 0.82)
-
-
-@dataclass(frozen=True, slots=True)
-class DemoRow:
-    """The errors at one complexity.
-
-    Attributes
-    ----------
-    complexity : float
-        Target complexity of both meshes.
-    adapted_points, uniform_points : int
-        Unknowns on the adapted and the uniform mesh.
-    adapted_error, uniform_error : float
-        L2 norm of the difference from the reference solution.
-    """
-
-    complexity: float
-    adapted_points: int
-    adapted_error: float
-    uniform_points: int
-    uniform_error: float
-
-    @property
-    def gain(self) -> float:
-        """How many times smaller the error is on the adapted mesh."""
-        return self.uniform_error / self.adapted_error
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,8 +133,8 @@ def run_demo(
     progress("files and pictures")
     demo = Demo(
         rows=tuple(rows),
-        adapted_order=observed_order(*_columns(rows, "adapted")),
-        uniform_order=observed_order(*_columns(rows, "uniform")),
+        adapted_order=order_of(rows, "adapted", dim=2),
+        uniform_order=order_of(rows, "uniform", dim=2),
         reference_points=reference[0].n_points,
         loop=loop,
         files=(*files, place / "report.json"),
@@ -197,11 +172,6 @@ def _distance(mesh: Mesh, u: Floats, reference: tuple[Mesh, Floats]) -> float:
     return l2_norm(fine, carried - exact)
 
 
-def _columns(rows: Sequence[DemoRow], kind: str) -> tuple[list[int], list[float], int]:
-    counts = [getattr(row, f"{kind}_points") for row in rows]
-    return counts, [getattr(row, f"{kind}_error") for row in rows], 2
-
-
 def _written(place: Path, loop: Loop, steps: Sequence[Step], rows: Sequence[DemoRow]) -> list[Path]:
     first, last = loop.steps[0], steps[-1]
     middle = steps[min(1, len(steps) - 1)]
@@ -218,7 +188,7 @@ def _written(place: Path, loop: Loop, steps: Sequence[Step], rows: Sequence[Demo
     )
     pictures.metric_picture(place / "metric.png", *_metric_of(middle))
     curves = {
-        f"{kind} mesh": list(zip(*_columns(rows, kind)[:2], strict=True))
+        f"{kind} mesh": list(zip(*columns_of(rows, kind), strict=True))
         for kind in ("uniform", "adapted")
     }
     pictures.convergence_picture(

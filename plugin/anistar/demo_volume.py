@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .adapt import AdaptOptions
+from .demo_rows import DemoRow, order_of
 from .interpolation_error import l2_error
 from .loop import LoopOptions, Step, adapt_loop
 from .mesh import Mesh
@@ -20,7 +21,6 @@ from .metric import MetricOptions
 from .remesh import remesh
 from .report import attributes, write_json
 from .series import write_series
-from .study import observed_order
 
 Floats = NDArray[np.float64]
 Progress = Callable[[str], object]
@@ -33,39 +33,13 @@ RADIUS, STEEPNESS = 0.7, 30.0
 BOXES = 8
 
 
-@dataclass(frozen=True, slots=True)
-class VolumeRow:
-    """The errors at one complexity.
-
-    Attributes
-    ----------
-    complexity : float
-        Target complexity of both meshes.
-    adapted_points, uniform_points : int
-        Points of the adapted and the uniform mesh.
-    adapted_error, uniform_error : float
-        L2 norm of the interpolation error.
-    """
-
-    complexity: float
-    adapted_points: int
-    adapted_error: float
-    uniform_points: int
-    uniform_error: float
-
-    @property
-    def gain(self) -> float:
-        """How many times smaller the error is on the adapted mesh."""
-        return self.uniform_error / self.adapted_error
-
-
 @dataclass(frozen=True, eq=False)
 class VolumeDemo:
     """What the demo did.
 
     Attributes
     ----------
-    rows : tuple of VolumeRow
+    rows : tuple of DemoRow
         One for each complexity.
     adapted_order, uniform_order : float
         Least-squares slope of ``-log(error)`` against ``log(points) / 3``.
@@ -75,7 +49,7 @@ class VolumeDemo:
         Wall time.
     """
 
-    rows: tuple[VolumeRow, ...]
+    rows: tuple[DemoRow, ...]
     adapted_order: float
     uniform_order: float
     files: tuple[Path, ...]
@@ -156,8 +130,8 @@ def run_volume_demo(
     progress("files")
     demo = VolumeDemo(
         rows=tuple(rows),
-        adapted_order=observed_order(*_columns(rows, "adapted")),
-        uniform_order=observed_order(*_columns(rows, "uniform")),
+        adapted_order=order_of(rows, "adapted", dim=3),
+        uniform_order=order_of(rows, "uniform", dim=3),
         files=(*files, place / "report.json"),
         seconds=time.perf_counter() - started,
     )
@@ -165,19 +139,14 @@ def run_volume_demo(
     return demo
 
 
-def _row(step: Step, coarse: Mesh) -> VolumeRow:
+def _row(step: Step, coarse: Mesh) -> DemoRow:
     complexity = float(step.complexity or 0.0)
     M = np.tile(complexity ** (2.0 / 3.0) * np.eye(3), (coarse.n_points, 1, 1))
     uniform = remesh(coarse, M).mesh
-    return VolumeRow(
+    return DemoRow(
         complexity=complexity,
         adapted_points=step.mesh.n_points,
         adapted_error=l2_error(step.mesh, front(step.mesh.points), front),
         uniform_points=uniform.n_points,
         uniform_error=l2_error(uniform, front(uniform.points), front),
     )
-
-
-def _columns(rows: Sequence[VolumeRow], kind: str) -> tuple[list[int], list[float], int]:
-    counts = [getattr(row, f"{kind}_points") for row in rows]
-    return counts, [getattr(row, f"{kind}_error") for row in rows], 3

@@ -12,12 +12,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .adapt import AdaptOptions, AdaptReport, Floats, Projection, adapt, metric_field_names
+from .adapt import AdaptOptions, AdaptReport, Floats, adapt, metric_field_names
 from .errors import MeshingError
 from .fields import Field, as_fields
 from .interpolation_error import interpolation_error
 from .mesh import Mesh
 from .options import require
+from .projection import Project
 from .report import Reportable, as_builtin
 
 Fields = Mapping[str, Field | ArrayLike]
@@ -187,7 +188,7 @@ def adapt_loop(
     options: LoopOptions,
     *,
     geometry: Mesh | None = None,
-    project: Projection | None = None,
+    project: Project | None = None,
     callback: Callable[[Step], object] | None = None,
     finished: Sequence[Step] = (),
 ) -> Loop:
@@ -266,9 +267,7 @@ def _solved(solve: Solve, state: _State, options: LoopOptions) -> Step:
     )
 
 
-def _adapted(
-    step: Step, options: LoopOptions, geometry: Mesh, project: Projection | None
-) -> _State:
+def _adapted(step: Step, options: LoopOptions, geometry: Mesh, project: Project | None) -> _State:
     complexity = options.complexity_after(step.iteration, step.mesh.dim)
     metric = dataclasses.replace(
         options.adapt.metric,

@@ -2,104 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .consistency import ConsistencyOptions
 from .errors import MeshingError
 from .mesh import Mesh
 from .metric import check_metric
 from .options import require
+from .projection import Project, pointwise
+from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport, report_of
 from .volume_remesh import remesh_volume
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
-
-Project = Callable[[Float, int], ArrayLike]
-"""``project(points, facet_tag)``: the (k, d) points moved onto the user's geometry."""
-
-Callback = Callable[[str, float], object]
-"""``callback(phase, fraction)``, called now and then; an exception it raises ends the call."""
-
-UNLIMITED = 2**62
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RemeshOptions:
-    """How to remesh; the metric itself is taken as it is given.
-
-    Parameters
-    ----------
-    max_vertices : int, optional
-        Refinement stops there; the mesh is valid but ``report.converged`` is False.
-    max_seconds : float, optional
-        The call stops after this wall time with the mesh it has by then.
-    frozen_tags : sequence of int
-        Facets with these tags are kept as they are.
-    ridge_angle : float
-        Degrees; the boundary has a corner (in 3D: a ridge) where it turns by at least this.
-    agreement : bool or "auto"
-        Move vertices until the stars of the mesh agree, so that `certify` finds every star
-        Delaunay in its own metric. "auto" does so when the metric varies slowly enough from
-        vertex to vertex for that to succeed; ``report.agreement`` says what was decided.
-    until_consistent : bool or "pure"
-        After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
-        star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.
-        "pure" starts from the boundary alone and runs only that algorithm. In 2D only.
-    consistency : ConsistencyOptions
-        Its parameters.
-    seed : int
-        Of the random moves in the agreement phase.
-    threads : int
-        That work on the mesh side by side; the result does not depend on it, to the last bit.
-    hausdorff_number : float
-        Distance of a curve or curved surface from an edge along it, relative to the edge's
-        length; longer edges are split whatever the metric says.
-    callback : callable, optional
-        ``callback(phase, fraction)`` for progress; raise in it to interrupt.
-    """
-
-    max_vertices: int | None = None
-    max_seconds: float | None = None
-    frozen_tags: Sequence[int] = ()
-    ridge_angle: float = 45.0
-    hausdorff_number: float = 0.1
-    agreement: bool | Literal["auto"] = "auto"
-    until_consistent: bool | Literal["pure"] = False
-    consistency: ConsistencyOptions = field(default_factory=ConsistencyOptions)
-    seed: int = 0
-    threads: int = 1
-    callback: Callback | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("max_vertices", "seed", "threads"):
-            value = getattr(self, name)
-            if value is not None and not isinstance(value, int | np.integer):
-                raise TypeError(f"{name} must be an integer, got {value!r}")
-        if self.max_vertices is not None and self.max_vertices < 3:
-            raise ValueError(f"max_vertices must be at least 3, got {self.max_vertices}")
-        if self.max_seconds is not None and not self.max_seconds > 0:
-            raise ValueError(f"max_seconds must be positive, got {self.max_seconds}")
-        if not 0 < self.ridge_angle <= 180:
-            raise ValueError(f"ridge_angle must be in (0, 180] degrees, got {self.ridge_angle}")
-        if not 0 < self.hausdorff_number <= 1:
-            raise ValueError(f"hausdorff_number must be in (0, 1], got {self.hausdorff_number}")
-        if not (isinstance(self.agreement, bool) or self.agreement == "auto"):
-            raise ValueError(f'agreement must be True, False or "auto", got {self.agreement!r}')
-        if not (isinstance(self.until_consistent, bool) or self.until_consistent == "pure"):
-            raise ValueError(
-                f'until_consistent must be True, False or "pure", got {self.until_consistent!r}'
-            )
-        if not 0 <= self.seed < 2**64:
-            raise ValueError(f"seed must be in [0, 2**64), got {self.seed}")
-        if not 1 <= self.threads <= 256:
-            raise ValueError(f"threads must be in [1, 256], got {self.threads}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -223,14 +144,14 @@ def _call_core(
             np.array(options.frozen_tags, dtype=np.int32),
             options.ridge_angle,
             options.hausdorff_number,
-            UNLIMITED if options.max_vertices is None else options.max_vertices,
-            np.inf if options.max_seconds is None else options.max_seconds,
+            options.vertex_bound,
+            options.time_bound,
             {True: "on", False: "off", "auto": "auto"}[options.agreement],
             {True: "on", False: "off", "pure": "pure"}[options.until_consistent],
             parameters,
             options.seed,
             options.threads,
-            None if project is None else _pointwise(project, scale),
+            None if project is None else pointwise(project, scale),
             options.callback,
         )
     except _core.MeshingError as error:
@@ -242,20 +163,6 @@ def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:
     unknown = sorted(set(frozen) - set(geometry.facet_tags.tolist()))
     if unknown:
         raise ValueError(f"frozen_tags: no facet of the geometry has tag {unknown[0]}")
-
-
-def _pointwise(
-    project: Project, scale: float
-) -> Callable[[float, float, int], tuple[float, float]]:
-    """Call the user's vectorised projection for one scaled point, and check what it returns."""
-
-    def at(x: float, y: float, tag: int) -> tuple[float, float]:
-        moved = np.asarray(project(np.array([[x, y]]) / scale, tag), dtype=np.float64)
-        if moved.shape != (1, 2) or not np.isfinite(moved).all():
-            raise ValueError(f"project must return finite points of shape (1, 2), got {moved!r}")
-        return float(moved[0, 0] * scale), float(moved[0, 1] * scale)
-
-    return at
 
 
 def _same_points(wanted: Float, points: Float) -> Int:

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .adapt import AdaptOptions, Floats, Projection, metric_field_names
+from .adapt import AdaptOptions, Floats, metric_field_names
 from .errors import MeshingError
 from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import from_fields
 from .options import require
+from .projection import Project
 from .quality import UNIT, metric_lengths
 from .remesh import remesh
 from .report import attributes
@@ -156,7 +157,7 @@ def unsteady_loop(
     options: UnsteadyOptions | None = None,
     *,
     geometry: Mesh | None = None,
-    project: Projection | None = None,
+    project: Project | None = None,
     callback: Callable[[Instant], object] | None = None,
 ) -> Unsteady:
     """Solve a problem in time on meshes that follow the solution.
@@ -233,7 +234,7 @@ Carry = Callable[[Instant, Mesh], tuple[Fields, dict[str, Any] | None]]
 @dataclass(frozen=True)
 class _Shape:
     geometry: Mesh
-    project: Projection | None
+    project: Project | None
 
 
 def _ascending(times: Sequence[float]) -> list[float]:

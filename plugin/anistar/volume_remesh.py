@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from . import _core
 from .mesh import Mesh
+from .projection import Project, pointwise
+from .remesh_options import RemeshOptions
 
-if TYPE_CHECKING:
-    from .remesh import Project, RemeshOptions
-
-UNLIMITED = 2**62
 NOT_YET = "skipped: there is no agreement phase in 3D yet"
 
 
@@ -55,10 +52,11 @@ def remesh_volume(
         np.array(options.frozen_tags, dtype=np.int32),
         options.ridge_angle,
         options.hausdorff_number,
-        UNLIMITED if options.max_vertices is None else options.max_vertices,
-        np.inf if options.max_seconds is None else options.max_seconds,
+        options.vertex_bound,
+        options.time_bound,
         options.seed,
-        None if project is None else _pointwise(project, scale),
+        options.threads,
+        None if project is None else pointwise(project, scale),
         options.callback,
     )
     raw["agreement"] = NOT_YET if options.agreement else "off"
@@ -66,17 +64,3 @@ def remesh_volume(
     rules = ("size", "radius_edge", "sliver", "inconsistency", "boundary", "rounds")
     raw["consistency"] = {**dict.fromkeys(rules, 0), "stop_reason": ""}
     return raw
-
-
-def _pointwise(
-    project: Callable[[NDArray[np.float64], int], ArrayLike], scale: float
-) -> Callable[[float, float, float, int], tuple[float, float, float]]:
-    """Call the user's vectorised projection for one scaled point, and check what it returns."""
-
-    def at(x: float, y: float, z: float, tag: int) -> tuple[float, float, float]:
-        moved = np.asarray(project(np.array([[x, y, z]]) / scale, tag), dtype=np.float64)
-        if moved.shape != (1, 3) or not np.isfinite(moved).all():
-            raise ValueError(f"project must return finite points of shape (1, 3), got {moved!r}")
-        return float(moved[0, 0] * scale), float(moved[0, 1] * scale), float(moved[0, 2] * scale)
-
-    return at

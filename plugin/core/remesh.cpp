@@ -5,6 +5,7 @@
 #include "refine.h"
 #include "star_check.h"
 #include "start.h"
+#include "stopwatch.h"
 
 namespace anistar {
 namespace {
@@ -51,29 +52,6 @@ void check_gap(const Background<2> &background, const GeometryInput &geometry) {
           x);
   }
 }
-
-class Stopwatch {
-public:
-  Stopwatch(Monitor &monitor, std::map<std::string, double> &seconds)
-      : monitor_(monitor), seconds_(seconds) {}
-  void phase(const std::string &name) {
-    stop();
-    name_ = name;
-    monitor_.enter(name);
-  }
-  void stop() {
-    const double now = monitor_.elapsed();
-    if (!name_.empty())
-      seconds_[name_] += now - last_;
-    last_ = now;
-  }
-
-private:
-  Monitor &monitor_;
-  std::map<std::string, double> &seconds_;
-  std::string name_;
-  double last_ = 0;
-};
 
 void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
            std::map<std::string, double> &counts) {

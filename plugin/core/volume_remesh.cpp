@@ -1,5 +1,7 @@
 #include "volume_remesh.h"
 
+#include "stopwatch.h"
+
 namespace anistar {
 namespace {
 
@@ -80,29 +82,6 @@ void extract_facets(const Volume &volume, VolumeResult &out) {
   }
 }
 
-class Phases {
-public:
-  Phases(Monitor &monitor, std::map<std::string, double> &seconds)
-      : monitor_(monitor), seconds_(seconds) {}
-  void enter(const std::string &name) {
-    leave();
-    name_ = name;
-    monitor_.enter(name);
-  }
-  void leave() {
-    const double now = monitor_.elapsed();
-    if (!name_.empty())
-      seconds_[name_] += now - last_;
-    last_ = now;
-  }
-
-private:
-  Monitor &monitor_;
-  std::map<std::string, double> &seconds_;
-  std::string name_;
-  double last_ = 0;
-};
-
 } // namespace
 
 VolumeResult remesh_volume(const VolumeInput &input,
@@ -111,27 +90,27 @@ VolumeResult remesh_volume(const VolumeInput &input,
                            const VolumeSettings &settings, Monitor::Progress progress) {
   VolumeResult out;
   Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
-  Phases phases(monitor, out.seconds);
+  Stopwatch watch(monitor, out.seconds);
 
-  phases.enter("background");
+  watch.phase("background");
   const Background<3> background(input.surface.points, input.cells, metric);
   Volume volume =
       make_volume(input, metric, background, geometry, std::move(projection));
   VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed);
-  phases.enter("size");
+  watch.phase("size");
   grow(volume, passes);
-  phases.enter("shape");
+  watch.phase("shape");
   shape(passes);
   renumber(volume);
 
-  phases.enter("report");
+  watch.phase("report");
   extract_facets(volume, out);
   out.vertices = std::move(volume.mesh.vertices);
   out.cells = std::move(volume.mesh.cells);
   out.cell_tags = std::move(volume.mesh.region);
-  out.statistics = measure(out.vertices, out.cells, 1);
-  out.distortion = distortion_quantiles(out.vertices, out.cells, 1);
-  phases.leave();
+  out.statistics = measure(out.vertices, out.cells, settings.threads);
+  out.distortion = distortion_quantiles(out.vertices, out.cells, settings.threads);
+  watch.stop();
   const VolumeCounts &counts = passes.counts();
   for (const auto &[name, value] : {std::pair{"splits", counts.splits},
                                     {"collapses", counts.collapses},

@@ -12,7 +12,8 @@ from typing import Any
 
 from ...mesh import Mesh
 from ...metric import graded
-from ...remesh import RemeshOptions, remesh
+from ...remesh import remesh
+from ...remesh_options import RemeshOptions
 from .gather import gathered, scattered
 from .labels import PlexLabels
 from .library import ADAPTOR, plex_at, register_adaptor, start_error, vec_at

@@ -1,0 +1,45 @@
+"""What the demos measure: errors on adapted and on uniform meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .study import observed_order
+
+
+@dataclass(frozen=True, slots=True)
+class DemoRow:
+    """The errors at one complexity.
+
+    Attributes
+    ----------
+    complexity : float
+        Target complexity of both meshes.
+    adapted_points, uniform_points : int
+        Unknowns on the adapted and the uniform mesh.
+    adapted_error, uniform_error : float
+        L2 norm of the difference from the reference solution, or from the exact one.
+    """
+
+    complexity: float
+    adapted_points: int
+    adapted_error: float
+    uniform_points: int
+    uniform_error: float
+
+    @property
+    def gain(self) -> float:
+        """How many times smaller the error is on the adapted mesh."""
+        return self.uniform_error / self.adapted_error
+
+
+def columns_of(rows: Sequence[DemoRow], kind: str) -> tuple[list[int], list[float]]:
+    """Return the points and the errors on one kind of mesh, "adapted" or "uniform"."""
+    counts = [getattr(row, f"{kind}_points") for row in rows]
+    return counts, [getattr(row, f"{kind}_error") for row in rows]
+
+
+def order_of(rows: Sequence[DemoRow], kind: str, *, dim: int) -> float:
+    """Return the observed order on one kind of mesh."""
+    return observed_order(*columns_of(rows, kind), dim)
