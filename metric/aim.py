@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .complexity import ELEMENTS_PER_COMPLEXITY
+from .complexity import REAL_ELEMENTS_PER_COMPLEXITY
 from .estimate import elements_per_complexity
 from .field_hessians import FieldHessian
 from .finishing import Finishing
@@ -98,7 +98,7 @@ def _at_complexity(finishing: Finishing, base: Array, target: float, before: flo
     reached = abs(error) <= COMPLEXITY_TOLERANCE
     message = f"complexity {best.complexity:.6g} after {len(evaluations)} evaluations"
     if not reached:
-        message = _missed(target, best.complexity, evaluations)
+        message = missed(target, best.complexity, evaluations)
     return Aimed(
         growth=growth,
         factor=before * best.factor,
@@ -113,7 +113,7 @@ def _at_complexity(finishing: Finishing, base: Array, target: float, before: flo
 
 def _at_elements(finishing: Finishing, base: Array, elements: float) -> Aimed:
     """Aim at an expected number of elements; what one costs depends on the metric itself."""
-    per = ELEMENTS_PER_COMPLEXITY[base.shape[-1]]
+    per = REAL_ELEMENTS_PER_COMPLEXITY[base.shape[-1]]
     aimed, evaluations = _at_complexity(finishing, base, elements / per), 0
     for _ in range(ELEMENT_STEPS):
         evaluations += aimed.evaluations
@@ -166,7 +166,7 @@ def _at_error(
     )
 
 
-def _missed(target: float, value: float, evaluations: list[Evaluation]) -> str:
+def missed(target: float, value: float, evaluations: list[Evaluation]) -> str:
     """Say that a target complexity was missed, and why."""
     found = [evaluation.complexity for evaluation in evaluations]
     # the order of the intersections in the gradation can make the complexity jump

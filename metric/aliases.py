@@ -18,6 +18,9 @@ _IS_OFF = (False, -1)
 #: Options of PETSc and Mmg that we have no counterpart for: values by which they ask for nothing
 #: (None: any), and what to do instead.
 FOREIGN: dict[str, tuple[tuple[float, ...] | None, str]] = {
+    "hausdorff_number": ((), "it is an option of remeshing"),
+    "hausd": ((), "it is an option of remeshing, hausdorff_number"),
+    "ar": ((), "it is an option of remeshing, ridge_angle"),
     "isotropic": (_IS_OFF, "a_max=1 makes a metric isotropic"),
     "uniform": (_IS_OFF, "anistar.metric.from_sizes makes uniform metrics"),
     "no_insert": (_IS_OFF, "vertices are always inserted where the metric asks for them"),

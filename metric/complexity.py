@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 ELEMENTS_PER_COMPLEXITY = {2: 2.309, 3: 8.49}
 """Unit simplices per unit of complexity: 1 / (sqrt(3) / 4) and 1 / (sqrt(2) / 12)."""
 
+REAL_ELEMENTS_PER_COMPLEXITY = {2: 2.309, 3: 10.4}
+"""The same of real meshes of a constant metric: perfect tetrahedra do not fill space."""
+
 SERIES_SPREAD = 1.0
 """Largest range of exponents in a cell for which the power series is used."""
 

@@ -102,7 +102,9 @@ def _power_mean(p: float, d: int) -> float:
     sorted_ = np.sort(grids, axis=1)  # order statistics are uniform on the simplex
     ends = np.zeros((len(grids), 1)), np.ones((len(grids), 1))
     barycentric = np.diff(np.concatenate([ends[0], sorted_, ends[1]], axis=1), axis=1)
-    return float(np.mean(_shape(barycentric) ** p) ** (1.0 / p))
+    shape = _shape(barycentric)
+    largest = float(shape.max())  # a large power of it would vanish
+    return largest * float(np.mean((shape / largest) ** p) ** (1.0 / p))
 
 
 def _shape(barycentric: Array) -> Array:

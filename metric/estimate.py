@@ -9,16 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import check_metric
-from .complexity import ELEMENTS_PER_COMPLEXITY, complexity
+from .complexity import REAL_ELEMENTS_PER_COMPLEXITY, complexity
 from .distortion import distortion, edge_lengths
 from .graph import mesh_edges
 from .mesh import MeshLike, cell_volumes, point_volumes
 
 Array = NDArray[np.float64]
-
-EXCESS = {2: 1.0, 3: 1.225}
-"""Elements of real meshes of a constant metric over those of perfect unit simplices, which do
-not fill space in 3D."""
 
 ELEMENTS_PER_DISTORTION = {2: 0.175, 3: 0.2}
 """Share of elements that a mean distortion of 1 adds, measured: edges that look unit from one
@@ -94,8 +90,9 @@ def estimate(mesh: MeshLike, M: Array) -> Estimate:
 def elements_per_complexity(mesh: MeshLike, M: Array) -> float:
     """Return the expected elements of a unit mesh over the complexity of a checked metric."""
     d = mesh.points.shape[1]
-    least = ELEMENTS_PER_COMPLEXITY[d] * EXCESS[d]
-    return least * (1.0 + ELEMENTS_PER_DISTORTION[d] * mean_distortion(mesh, M))
+    return REAL_ELEMENTS_PER_COMPLEXITY[d] * (
+        1.0 + ELEMENTS_PER_DISTORTION[d] * mean_distortion(mesh, M)
+    )
 
 
 def mean_distortion(mesh: MeshLike, M: Array) -> float:

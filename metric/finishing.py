@@ -11,7 +11,7 @@ from .algebra import log_determinant
 from .bounds import check_bounds, clipped
 from .checks import check_result
 from .complexity import integral_of_exponential
-from .gradation import GrowthLaw, grade_on
+from .gradation import TOLERANCE, GrowthLaw, grade_on
 from .graph import VertexGraph
 from .growth import Growth
 from .kernels import wide_graph
@@ -20,6 +20,9 @@ from .mesh import MeshLike, cell_volumes, diameter
 from .options import MetricOptions
 
 Array = NDArray[np.float64]
+
+MAX_REPEATS = 5
+"""Of the gradation where the bound of anisotropy changes its result; two are usual."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,9 +46,15 @@ class Finishing:
         bounded = self.bounded(M)
         if self.law.is_off:
             return Growth(metric=bounded, rounds=0, updates=0, converged=True)
-        growth = grade_on(self.graph, self.mesh.points, bounded, self.law)
-        # an intersection of metrics within the bounds can exceed them by some per cent
-        return replace(growth, metric=clipped(growth.metric, self.h_min, None, self.a_max))
+        for _ in range(MAX_REPEATS):
+            growth = grade_on(self.graph, self.mesh.points, bounded, self.law)
+            # An intersection of metrics within the bound of anisotropy can exceed it. Raising
+            # the small eigenvalues again asks for gradation again; both only refine.
+            bounded = clipped(growth.metric, None, None, self.a_max)
+            if np.allclose(bounded, growth.metric, rtol=TOLERANCE, atol=0.0):
+                break
+        # the smallest size has the last word: what is not resolved there is not graded either
+        return replace(growth, metric=clipped(bounded, self.h_min, None, self.a_max))
 
     def complexity(self, M: Array) -> float:
         """Complexity of a checked metric."""

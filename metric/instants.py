@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .aim import missed
 from .algebra import absolute
 from .combination import intersection_of
 from .field_hessians import FieldHessian, hessians_of
@@ -37,6 +38,8 @@ class SpaceTimeLedger:
         Space-time complexity, vertices times time steps: asked, and reached.
     reached : bool
         Whether they agree within 0.1 %.
+    message : str
+        What came of it, and why where the target was missed.
     factor : float
         The factor on all metrics that the root-find chose.
     evaluations : int
@@ -50,6 +53,7 @@ class SpaceTimeLedger:
     target_complexity: float
     complexity: float
     reached: bool
+    message: str
     factor: float
     evaluations: int
     time_steps: tuple[float, ...]
@@ -110,18 +114,21 @@ def from_instants(
 
     dim = meshes[0].points.shape[1]
     growths, best, evaluations = rescaling(attempt, options.target_complexity, dim)
-    error = best.complexity / options.target_complexity - 1.0
+    reached = abs(best.complexity / options.target_complexity - 1.0) <= COMPLEXITY_TOLERANCE
+    message = f"complexity {best.complexity:.6g} after {len(evaluations)} evaluations"
+    if not reached:
+        message = missed(options.target_complexity, best.complexity, evaluations)
+        logger.warning(message)
     ledger = SpaceTimeLedger(
         target_complexity=options.target_complexity,
         complexity=best.complexity,
-        reached=abs(error) <= COMPLEXITY_TOLERANCE,
+        reached=reached,
+        message=message,
         factor=best.factor,
         evaluations=len(evaluations),
         time_steps=tuple(float(n) for n in steps),
         instants=tuple(_complexities(finishings, growths)),
     )
-    if not ledger.reached:
-        logger.warning("space-time complexity %+.2g %% off its target", 100.0 * error)
     return [growth.metric for growth in growths], ledger
 
 

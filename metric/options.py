@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from .aliases import advice, asks_nothing, flattened, our_name, our_value
 from .bounds import check_bounds
 from .combination import check_rule
-from .complexity import ELEMENTS_PER_COMPLEXITY
+from .complexity import REAL_ELEMENTS_PER_COMPLEXITY
 from .gradation import DEFAULT_FACTORS, GrowthLaw
 from .normalisation import check_p, check_target
 from .recovery import RecoveryOptions
@@ -95,6 +95,9 @@ class MetricOptions:
             check_target(name, value)
         if self.max_elements is not None:
             check_target("max_elements", self.max_elements)
+        for name in ("restrict_anisotropy_first", "interfaces"):
+            if not isinstance(getattr(self, name), bool | np.bool_ | int):
+                raise TypeError(f"{name} must be True or False, got {getattr(self, name)!r}")
         check_p(self.p)
         check_scale(self.scale)
         check_rule(self.intersection_rule)
@@ -164,7 +167,7 @@ class MetricOptions:
         if self.target_complexity is not None:
             return self.target_complexity
         if self.target_elements is not None:
-            return self.target_elements / ELEMENTS_PER_COMPLEXITY[dim]
+            return self.target_elements / REAL_ELEMENTS_PER_COMPLEXITY[dim]
         raise ValueError("give target_complexity or target_elements, got neither")
 
     def gradation_for(self, dim: int) -> float | None:

@@ -41,11 +41,12 @@ def scales_of(fields: Mapping[str, Samples], scale: Scale) -> dict[str, float]:
         wrong = set(scale) ^ set(fields)
         if wrong:
             raise ValueError(f"scale must have a value for each field: see {sorted(wrong)}")
-        return {name: _scale_of(one.columns, scale[name]) for name, one in fields.items()}
-    return {name: _scale_of(one.columns, scale) for name, one in fields.items()}
+        return {name: scale_of(one.columns, scale[name]) for name, one in fields.items()}
+    return {name: scale_of(one.columns, scale) for name, one in fields.items()}
 
 
-def _scale_of(values: Array, scale: str | float) -> float:
+def scale_of(values: Array, scale: str | float) -> float:
+    """Return by what values (n,) or (n, k) are divided; 1 for constant ones and "complexity"."""
     if not isinstance(scale, str):
         return float(scale)
     if scale == "range":

@@ -91,9 +91,9 @@ def recover_hessian(
         ``zz``: superconvergent patch recovery of the gradient, twice.
         ``clement``: as ``zz`` by Clement's local L2 projections.
         ``green``: weak Hessian without a boundary integral, lumped mass.
-        ``auto``: ``quadratic``, on larger patches where the signal is weak against the noise,
-        ``zz`` at the points where no patch is well conditioned, and damped to zero where
-        noise explains it.
+        ``auto``: ``quadratic`` (for P2 values ``zz``), on larger patches where the signal is
+        weak against the noise, ``l2`` at the points where no patch is well conditioned, and
+        damped to zero where noise explains it.
     space : {"P1", "P2", "P0"}, optional
         P1: values at the n points. P2: values at the points and at the midpoints of the edges,
         in the order of `p2_nodes`. P0: means over the cells. If None, a field on cells is P0,
@@ -202,6 +202,9 @@ def _scaled_noise(noise: float | None, size: Array) -> Array | None:
 
 def _remark(setting: Setting, recovered: RecoveredHessian, part: slice) -> str:
     if not recovered.damped[:, part].any():
+        noise = float(recovered.noise[part].max())
+        if noise > REPORTED_NOISE:
+            return f"no second derivative above the noise of {noise:.1e}: uniform"
         return "no second derivative above round-off: uniform"
     n = setting.cut.n_given
     if setting.method != "quadratic":

@@ -83,6 +83,11 @@ class LoopOptions:
             raise ValueError(f"max_iterations must be at least 1, not {self.max_iterations}")
         if self.rtol is not None and self.qoi is None:
             raise ValueError(f"rtol = {self.rtol} needs a qoi")
+        if self.adapt.metric.target_error is not None:
+            raise ValueError(
+                f"target_error = {self.adapt.metric.target_error} is an option of one metric: "
+                "a loop has a target_error of its own"
+            )
         if not self.complexities and self.target_error is None and self.rtol is None:
             raise ValueError("give complexities, target_error, or qoi with rtol")
 
@@ -269,12 +274,12 @@ def _solved(solve: Solve, state: _State, options: LoopOptions) -> Step:
 
 def _adapted(step: Step, options: LoopOptions, geometry: Mesh, project: Project | None) -> _State:
     complexity = options.complexity_after(step.iteration, step.mesh.dim)
-    metric = dataclasses.replace(
-        options.adapt.metric,
-        target_complexity=complexity,
-        target_elements=None,
-        target_error=None,
-    )
+    metric = options.adapt.metric
+    if metric.target_elements is not None and not options.complexities:
+        elements = metric.target_elements * GROWTH**step.iteration
+        metric = dataclasses.replace(metric, target_elements=elements)
+    else:
+        metric = dataclasses.replace(metric, target_complexity=complexity, target_elements=None)
     stages = dataclasses.replace(options.adapt, metric=metric)
     done = adapt(step.mesh, step.fields, stages, geometry=geometry, project=project)
     return _State(step.iteration + 1, complexity, done.mesh, done.fields, done.metric, done.report)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -16,6 +16,7 @@ from .errors import MeshingError
 from .fields import Field, as_fields
 from .mesh import Mesh
 from .metric import from_fields
+from .metric.scaling import Scale, scale_of
 from .options import require
 from .projection import Project
 from .quality import UNIT, metric_lengths
@@ -304,14 +305,39 @@ def _advanced(advance: Advance, start: Instant, ends: list[float]) -> list[Insta
 
 
 def _window_metric(history: Sequence[Instant], options: AdaptOptions) -> Floats:
-    """Return the metric that every instant asks for, at the target complexity."""
+    """Return the metric that every instant asks for, at the target complexity.
+
+    A field has one scale for the whole window: where it nearly vanishes it asks for little.
+    """
     mesh = history[0].mesh
     instants = [as_fields(mesh, instant.fields) for instant in history]
     names = metric_field_names(instants[0], options.metric_fields)
-    sources = {
-        f"{name} at {instant.time:g}": fields[name]
-        for instant, fields in zip(history, instants, strict=True)
-        for name in names
-    }
-    metric, _ = from_fields(mesh, sources, options.metric)
+    scales = _window_scales(
+        {name: np.stack([fields[name].values for fields in instants]) for name in names},
+        options.metric.scale,
+    )
+    sources, scale = {}, {}
+    for step, fields in enumerate(instants):
+        for name in names:
+            sources[f"{name} at step {step}"] = fields[name]
+            scale[f"{name} at step {step}"] = scales[name]
+    metric, _ = from_fields(mesh, sources, replace(options.metric, scale=scale))
     return np.asarray(metric)
+
+
+def _window_scales(values: Mapping[str, Floats], scale: Scale) -> dict[str, float]:
+    """Return by what each field, (instants, n) or (instants, n, d), is divided.
+
+    "complexity" makes fields comparable within one instant; over several it is their range.
+    """
+    asked = scale if isinstance(scale, Mapping) else dict.fromkeys(values, scale)
+    wrong = sorted(set(asked) ^ set(values))
+    if wrong:
+        raise ValueError(f"scale must have a value for each metric field: see {wrong[0]!r}")
+    return {
+        name: scale_of(
+            found.reshape(-1, *found.shape[2:]),
+            "range" if asked[name] == "complexity" else asked[name],
+        )
+        for name, found in values.items()
+    }

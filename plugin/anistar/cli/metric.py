@@ -21,12 +21,12 @@ from ..metric import (
     estimate,
     from_fields,
     from_instants,
-    graded,
     implied_metric,
     intersected,
     limited_step,
     mean,
 )
+from ..metric.finishing import finishing_on
 from ..metric.options import TARGETS
 from . import console
 from .files import writable
@@ -95,6 +95,10 @@ def run(arguments: argparse.Namespace) -> int:
             _show(arguments, ledger, [[s.name, s.complexity, s.remark] for s in ledger.stages])
             return 0
         parts = {"fields": M}
+    elif arguments.field:
+        raise ValueError(
+            f"--field {arguments.field[0]} needs a target, such as --target-complexity"
+        )
     else:
         parts = {}
     M, report = _combined(mesh, {**parts, **sources(mesh, arguments)}, arguments, options.metric)
@@ -124,10 +128,15 @@ def _combined(
         restrict_anisotropy_first=options.restrict_anisotropy_first,
     )
     complexities["bounded"] = complexity(mesh, M)
-    law = options.growth_law(mesh.dim)
-    M = graded(mesh, M, factor=law.factor, model=law.model, max_distortion=law.max_distortion)
+    M = finishing_on(mesh, options).finished(M).metric
     complexities["graded"] = complexity(mesh, M)
-    return M, Combined(complexities, complexities["graded"], estimate(mesh, M))
+    expected = estimate(mesh, M)
+    if options.max_elements is not None and expected.elements > options.max_elements:
+        raise ValueError(
+            f"the combined metric needs {expected.elements:.0f} elements, "
+            f"max_elements is {options.max_elements:g}"
+        )
+    return M, Combined(complexities, complexities["graded"], expected)
 
 
 def _run_instants(
