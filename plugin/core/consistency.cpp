@@ -9,7 +9,7 @@
 namespace anistar {
 namespace {
 
-constexpr int max_rounds = 80;
+constexpr int max_rounds = 160;
 /// Rounds without fewer failing cells after which the run has stalled.
 constexpr int patience = 12;
 /// Vertices are moved after every round when few cells fail, now and then when more do,
@@ -20,6 +20,9 @@ constexpr int rounds_between_moves = 4;
 constexpr double separation = .4;
 /// Encroached edges shorter than this are not split.
 constexpr double shortest_split = .8;
+
+/// More hits than any point that can be inserted has.
+constexpr int not_insertable = std::numeric_limits<int>::max();
 
 enum class Rule { none, size, radius_edge, sliver, inconsistency };
 
@@ -134,14 +137,16 @@ private:
     CounterRandom random(seed_ + 2, static_cast<std::uint64_t>(item.cell),
                          static_cast<std::uint64_t>(round));
     // rule 1 inserts the circumcentre itself, the others a point of the picking region
-    const int n = item.rule == Rule::size ? 1 : parameters_.candidates;
-    int fewest = std::numeric_limits<int>::max();
+    const bool is_centre_wanted = item.rule == Rule::size;
+    int fewest = not_insertable;
     Vertex<2> best;
     Index best_cell = none, best_hint = none;
     HalfFacet wall;
-    for (int k = 0; k < n && fewest > 0; ++k) {
+    for (int k = 0; k < parameters_.candidates && fewest > 0; ++k) {
+      if (is_centre_wanted && (fewest != not_insertable || wall.exists()))
+        break;
       Vector<2> x = ball.centre;
-      if (item.rule != Rule::size)
+      if (!is_centre_wanted || k > 0)
         x += ellipse.step(parameters_.delta * ball.radius, random);
       const Walk at = walk_to(mesh_, item.cell, x);
       if (at.cell == none) {
@@ -239,7 +244,7 @@ private:
   /// of its star and of its link on which the four metrics would disagree.
   [[nodiscard]] int hits_of(const Vertex<2> &p, Index cell, double radius) {
     if (!bound_insertion(p, cell))
-      return std::numeric_limits<int>::max();
+      return not_insertable;
     int hits = 0;
     ring_.clear(); // first vertex of each facet of the cavity -> the facet
     for (HalfFacet h : w_.cavity.facets())
@@ -305,11 +310,18 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                                           bool relocate, StarCheck &check) {
   ConsistencyCounts counts;
   Rounds rounds(w, parameters, seed, !relocate, counts);
-  const double most =
-      (1 + parameters.max_growth) * static_cast<double>(w.mesh.vertices.size());
-  MeshOnCurves best = w.on_curves;
-  StarCheck best_check = check;
+  double most = 0;
+  MeshOnCurves best;
+  StarCheck best_check;
   int since_best = 0;
+  const auto start = [&] {
+    best = w.on_curves;
+    best_check = check;
+    since_best = 0;
+    most = (1 + parameters.max_growth) * static_cast<double>(w.mesh.vertices.size());
+  };
+  start();
+  bool is_sizing = !relocate; // the pure mode starts from the boundary alone
   for (counts.rounds = 0;; ++counts.rounds) {
     const std::vector<BadCell> bad = rounds.bad_cells(check.bits);
     if (failing_fraction(check.bits) < failing_fraction(best_check.bits)) {
@@ -345,6 +357,9 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
     renumber(w, threads);
     check = check_stars(w, monitor, seed + 1 + std::uint64_t(counts.rounds), threads,
                         moving);
+    is_sizing = is_sizing && rule == Rule::size;
+    if (is_sizing)
+      start(); // a mesh too coarse to be judged is no best one, and may grow
   }
   if (failing_fraction(check.bits) > failing_fraction(best_check.bits)) {
     w.on_curves = std::move(best);

@@ -165,11 +165,14 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));
   Workspace w{on_curves, geometry, background, settings.hausdorff_number};
   Legaliser legaliser(w.mesh);
-  const RefineCounts refined = refine(w, legaliser, monitor, settings.threads);
+  // the pure mode starts from the boundary alone
+  const bool is_pure = settings.consistency == ConsistencyMode::pure;
+  const RefineCounts refined =
+      is_pure ? RefineCounts{} : refine(w, legaliser, monitor, settings.threads);
 
   watch.phase("shape");
   renumber(w, settings.threads);
-  if (settings.consistency != ConsistencyMode::pure)
+  if (!is_pure)
     shape(w, legaliser, monitor, settings.threads, out.counts);
   renumber(w, settings.threads);
 

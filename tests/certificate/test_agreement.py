@@ -32,6 +32,11 @@ def adapted(factor=1.5):
     return done.mesh, layered(done.mesh, factor=factor)
 
 
+def uniform_square():
+    mesh = square(10)
+    return mesh, np.broadcast_to(np.eye(2) / 0.08**2, (mesh.n_points, 2, 2)).copy()
+
+
 def test_agreement_certifies_every_star_of_a_graded_metric_without_more_vertices():
     mesh, M = adapted()
     plain = remesh(mesh, M, RemeshOptions(agreement=False))
@@ -89,14 +94,23 @@ def test_algorithm_2_ends_consistent_and_counts_vertices_by_rule():
     assert anistar.validate(done.mesh, mesh) == []
 
 
-def test_the_pure_mode_reproduces_the_paper_from_the_boundary_alone():
-    mesh, M = adapted(1.4)
+@pytest.mark.parametrize("make", [lambda: adapted(1.4), uniform_square], ids=["layer", "uniform"])
+def test_the_pure_mode_reproduces_the_paper_from_the_boundary_alone(make):
+    mesh, M = make()
     done = remesh(mesh, M, RemeshOptions(until_consistent="pure"))
     counts = done.report.consistency
     assert counts["stop_reason"] == "consistent"
-    assert counts["inconsistency"] > 0
+    assert done.report.counts["inserted"] == 0  # by the size phase of the ordinary way
+    assert counts["size"] > 0.5 * done.mesh.n_points
     assert done.report.counts.get("relocations", 0) == 0
     assert anistar.certify(done.mesh, done.metric).star_ok.all()
+    assert anistar.validate(done.mesh, mesh) == []
+
+
+def test_the_pure_mode_inserts_where_stars_of_a_layer_disagree():
+    mesh, M = adapted(1.4)
+    done = remesh(mesh, M, RemeshOptions(until_consistent="pure"))
+    assert done.report.consistency["inconsistency"] > 0
     assert anistar.validate(done.mesh, mesh) == []
 
 
