@@ -117,6 +117,9 @@ private:
     for (const std::vector<Index> &of_block : listed)
       for (Index v : of_block)
         work_.add(v);
+    if (!going) // some of them were not visited
+      for (Index v : vertices)
+        work_.add(v);
     return going;
   }
 

@@ -147,6 +147,8 @@ bool Relocator::resize_ball(Index v, CounterRandom &random, int least_drop) {
     ball_->commit();
     for (Index u : ball_->shell())
       settle(u);
+    for (Index u : ball_->shell()) // no flip tells of the edges of the other legs
+      list_around(u);
     return true;
   }
   return false;
@@ -208,6 +210,7 @@ bool Relocator::polish(Index v, int sweep, const VertexRange &range) {
   if (best_excess < before.excess - least_gain) {
     relocation_.put(best);
     ++counts_.moves;
+    list_around(v);
   }
   return true;
 }

@@ -66,6 +66,32 @@ def target(n):
     )
 
 
+def refined(points, cells, tags):
+    """Cut every triangle into four."""
+    edges = np.sort(np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]]), axis=1)
+    unique, middle = np.unique(edges, axis=0, return_inverse=True)
+    ab, bc, ca = (middle.reshape(3, -1) + len(points)).astype(cells.dtype)
+    a, b, c = cells.T
+    parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    children = np.concatenate([np.stack(part, axis=1) for part in parts])
+    return np.concatenate([points, points[unique].mean(axis=1)]), children, np.tile(tags, 4)
+
+
+def sectors(angles, radii, *, gaps=(), turn=0.3):
+    """Sectors around the origin, one region each; `angles` in degrees, `gaps` are left out."""
+    at = turn + np.radians(np.concatenate([[0], np.cumsum(angles)]))
+    n = len(angles)
+    n_rays = n if np.isclose(sum(angles), 360) else n + 1
+    rim = np.asarray(radii)[:n_rays, None] * np.stack([np.cos(at), np.sin(at)], axis=1)[:n_rays]
+    kept = np.array([k for k in range(n) if k not in gaps])
+    points = np.concatenate([[[0.0, 0.0]], rim])
+    cells = np.stack([np.zeros(len(kept), int), 1 + kept, 1 + (kept + 1) % n_rays], axis=1)
+    tags = 1 + kept
+    for _ in range(4):
+        points, cells, tags = refined(points, cells, tags)
+    return Mesh(points=points, cells=cells, cell_tags=tags)
+
+
 def uniform(mesh, h):
     """The metric of edges of length h."""
     return np.broadcast_to(np.eye(2) / h**2, (mesh.n_points, 2, 2)).copy()

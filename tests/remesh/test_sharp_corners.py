@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shapes import stretched, uniform
+from shapes import sectors, stretched, uniform
 
 import anistar
 from anistar.mesh import Mesh
@@ -10,32 +10,6 @@ from anistar.remesh import RemeshOptions
 
 ANGLES = [5, 7, 10, 15, 20, 30, 40, 50, 59]
 """Degrees, all of them sharp."""
-
-
-def refined(points, cells, tags):
-    """Cut every triangle into four."""
-    edges = np.sort(np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]]), axis=1)
-    unique, middle = np.unique(edges, axis=0, return_inverse=True)
-    ab, bc, ca = (middle.reshape(3, -1) + len(points)).astype(cells.dtype)
-    a, b, c = cells.T
-    parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-    children = np.concatenate([np.stack(part, axis=1) for part in parts])
-    return np.concatenate([points, points[unique].mean(axis=1)]), children, np.tile(tags, 4)
-
-
-def sectors(angles, radii, *, gaps=(), turn=0.3):
-    """Sectors around the origin, one region each; `angles` in degrees, `gaps` are left out."""
-    at = turn + np.radians(np.concatenate([[0], np.cumsum(angles)]))
-    n = len(angles)
-    n_rays = n if np.isclose(sum(angles), 360) else n + 1
-    rim = np.asarray(radii)[:n_rays, None] * np.stack([np.cos(at), np.sin(at)], axis=1)[:n_rays]
-    kept = np.array([k for k in range(n) if k not in gaps])
-    points = np.concatenate([[[0.0, 0.0]], rim])
-    cells = np.stack([np.zeros(len(kept), int), 1 + kept, 1 + (kept + 1) % n_rays], axis=1)
-    tags = 1 + kept
-    for _ in range(4):
-        points, cells, tags = refined(points, cells, tags)
-    return Mesh(points=points, cells=cells, cell_tags=tags)
 
 
 def slit(angle):
@@ -160,6 +134,32 @@ def test_legs_without_a_common_length_are_left_alone():
     done = anistar.remesh(mesh, uniform(mesh, 0.1))
     assert anistar.validate(done.mesh, mesh) == []
     assert done.report.counts["unprotected_corners"] > 0
+
+
+def bulging_wedge(n=40, corners=()):
+    """A sharp corner between a straight leg and an arc that bulges away from it."""
+    turn = np.linspace(0, 0.9, n + 1)[1:]
+    arc = np.stack([np.sin(turn), 1 - np.cos(turn) - 0.45 * turn], axis=1)
+    leg = np.linalg.norm(arc, axis=1)[:, None] * [np.cos(0.3), np.sin(0.3)]
+    between = 0.98 * arc + 0.02 * leg
+    points = np.concatenate([[[0.0, 0.0]], arc, between, leg])
+    a, b, c = (np.arange(n) + 1 + k * n for k in range(3))
+    cells = [[0, a[0], b[0]], [0, b[0], c[0]]]
+    for low, high in ((a, b), (b, c)):
+        for k in range(n - 1):
+            cells += [[low[k], low[k + 1], high[k + 1]], [low[k], high[k + 1], high[k]]]
+    return Mesh(points=points, cells=cells, corners=[b[k] for k in corners])
+
+
+def test_a_ball_whose_leg_has_to_follow_its_arc_is_given_up_and_counted():
+    whole, crowded = bulging_wedge(), bulging_wedge(corners=[8])
+    free, cut = (anistar.remesh(mesh, uniform(mesh, 0.5)) for mesh in (whole, crowded))
+    for done in (free, cut):
+        assert anistar.validate(done.mesh) == []
+    assert free.report.counts["protected_corners"] == 1
+    assert free.report.counts["unprotected_corners"] == 0
+    assert cut.report.counts["protected_corners"] == 0
+    assert cut.report.counts["unprotected_corners"] == 1
 
 
 def test_a_frozen_leg_sets_the_radius():
