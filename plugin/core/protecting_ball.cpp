@@ -1,5 +1,6 @@
 #include "protecting_ball.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace anistar {
@@ -43,7 +44,28 @@ bool ProtectingBall::gather(Index v) {
       return false;
     legs_.push_back({relocation, other, relocation.here(), relocation.score()});
   }
+  gather_edges();
+  disagreeing_before_ = count_disagreeing();
   return true;
+}
+
+/// The stars of the legs have edges in common, which count once.
+void ProtectingBall::gather_edges() {
+  edges_.clear();
+  for (const Leg &leg : legs_)
+    leg.relocation.for_each_edge([&](HalfFacet edge) {
+      const HalfFacet other = w_.mesh.opposite(edge);
+      const HalfFacet first =
+          other.exists() && other.cell() < edge.cell() ? other : edge;
+      if (std::find(edges_.begin(), edges_.end(), first) == edges_.end())
+        edges_.push_back(first);
+    });
+}
+
+int ProtectingBall::count_disagreeing() const {
+  return static_cast<int>(
+      std::count_if(edges_.begin(), edges_.end(),
+                    [&](HalfFacet edge) { return disagrees(w_.mesh, edge); }));
 }
 
 /// The change of the parameter that brings a vertex to `factor` times its distance from
@@ -84,15 +106,10 @@ bool ProtectingBall::resize(double factor) {
 }
 
 bool ProtectingBall::drops(int least) const {
-  int before = 0, now = 0;
-  for (const Leg &leg : legs_) {
-    const StarScore score = leg.relocation.score();
-    if (!score.keeps(leg.before, part_kept_on_curve))
+  for (const Leg &leg : legs_)
+    if (!leg.relocation.score().keeps(leg.before, part_kept_on_curve))
       return false;
-    before += leg.before.disagreeing;
-    now += score.disagreeing;
-  }
-  return now <= before - least;
+  return count_disagreeing() <= disagreeing_before_ - least;
 }
 
 void ProtectingBall::undo() { put_back(legs_.size()); }

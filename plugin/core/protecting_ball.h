@@ -41,7 +41,11 @@ private:
   std::vector<std::vector<Index>> entries_; ///< curve edges across each ball
   std::vector<Index> shell_;
   std::vector<Leg> legs_;
+  std::vector<HalfFacet> edges_; ///< of the legs' stars and of their links, each once
+  int disagreeing_before_ = 0;
 
+  void gather_edges();
+  [[nodiscard]] int count_disagreeing() const;
   [[nodiscard]] std::optional<double> step_to(const Leg &leg, double factor) const;
   void put_back(std::size_t n_legs);
 };
