@@ -75,7 +75,8 @@ Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
   for (std::size_t k = 0; k < front_.size(); ++k) {
     const auto [entry, depth] = front_[k];
     reach_ = std::max(reach_, depth);
-    const auto deeper = static_cast<std::uint8_t>(std::min(depth + 1, 255));
+    const auto deeper =
+        static_cast<std::uint8_t>(std::min<int>(depth + 1, farthest_reach));
     const Cell<d> &far = cell_at(entry.cell());
     const Index apex = far[entry.facet()];
     if (side(ball, apex) == Side::inside)

@@ -23,6 +23,9 @@ namespace anistar {
 template <std::size_t d>
 inline constexpr std::uint8_t all_vertices = (1u << (d + 1)) - 1;
 
+/// An answer that looked this many cells away, or more.
+inline constexpr std::uint8_t farthest_reach = 255;
+
 /// A mesh as the certificate sees it.
 template <std::size_t d> struct CertifiedMesh {
   std::span<const Vertex<d>> vertices;
@@ -74,8 +77,8 @@ private:
 };
 
 /// Bit k of bits[c]: cell c is Delaunay in the metric of its vertex k. The answer
-/// looked reach[c] cells away, 255 for that or more: it holds as long as these do not
-/// change.
+/// looked reach[c] cells away, at most `farthest_reach`: it holds as long as these do
+/// not change.
 struct DelaunayBits {
   std::vector<std::uint8_t> bits, reach;
 };

@@ -137,7 +137,8 @@ std::vector<Index> dependent(const Triangulation<2> &mesh,
   for (Index c : changed)
     see(c);
   const int farthest = *std::max_element(reach.begin(), reach.end());
-  for (int distance = 0; distance <= farthest && !next.empty(); ++distance) {
+  for (int distance = 0; distance <= farthest && !next.empty();
+       distance = std::min<int>(distance + 1, farthest_reach)) {
     layer.swap(next);
     next.clear();
     for (Index c : layer) {
