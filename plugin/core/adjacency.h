@@ -56,4 +56,9 @@ template <std::size_t d>
 [[nodiscard]] std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
                                                    std::size_t n_points);
 
+/// The edges of the cells, each once, as pairs of indices in increasing order.
+template <std::size_t d>
+[[nodiscard]] std::vector<std::array<Index, 2>> edges_of(std::span<const Cell<d>> cells,
+                                                         std::size_t n_points);
+
 } // namespace anistar

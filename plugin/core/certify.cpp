@@ -87,7 +87,7 @@ private:
   }
 
   void measure_distortion(CertificateResult &out) const {
-    const auto edges = edges_of_cells();
+    const auto edges = edges_of<d>(cells_, vertices_.size());
     std::vector<double> gamma(edges.size());
     parallel_ranges(edges.size(), threads_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t e = begin; e < end; ++e)
@@ -99,19 +99,6 @@ private:
         double &worst = out.distortion[static_cast<std::size_t>(v)];
         worst = std::max(worst, gamma[e]);
       }
-  }
-
-  /// Every edge once.
-  [[nodiscard]] std::vector<std::array<Index, 2>> edges_of_cells() const {
-    std::vector<std::array<Index, 2>> edges;
-    edges.reserve(cells_.size() * d * (d + 1) / 2);
-    for (const Cell<d> &cell : cells_)
-      for (std::size_t i = 0; i < d; ++i)
-        for (std::size_t j = i + 1; j <= d; ++j)
-          edges.push_back({std::min(cell[i], cell[j]), std::max(cell[i], cell[j])});
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    return edges;
   }
 
   [[nodiscard]] std::size_t

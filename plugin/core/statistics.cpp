@@ -82,37 +82,6 @@ Statistics statistics_of(const Sums &all, std::size_t n_cells) {
   return out;
 }
 
-/// The edges of the cells, each once, as pairs of indices in increasing order.
-template <std::size_t d>
-std::vector<std::array<Index, 2>> edges_of(std::span<const Cell<d>> cells,
-                                           std::size_t n_vertices) {
-  // a counting sort by the lower end, then a sort of every bucket
-  std::vector<std::size_t> start(n_vertices + 1, 0);
-  const auto each = [&](auto visit) {
-    for (const Cell<d> &cell : cells)
-      for (std::size_t i = 0; i <= d; ++i)
-        for (std::size_t j = i + 1; j <= d; ++j)
-          visit(static_cast<std::size_t>(std::min(cell[i], cell[j])),
-                std::max(cell[i], cell[j]));
-  };
-  each([&](std::size_t low, Index) { ++start[low + 1]; });
-  for (std::size_t v = 0; v < n_vertices; ++v)
-    start[v + 1] += start[v];
-  std::vector<Index> high(start.back());
-  std::vector<std::size_t> next(start.begin(), start.end() - 1);
-  each([&](std::size_t low, Index other) { high[next[low]++] = other; });
-  std::vector<std::array<Index, 2>> edges;
-  for (std::size_t v = 0; v < n_vertices; ++v) {
-    const auto begin = high.begin() + static_cast<std::ptrdiff_t>(start[v]),
-               end = high.begin() + static_cast<std::ptrdiff_t>(start[v + 1]);
-    std::sort(begin, end);
-    const auto last = std::unique(begin, end);
-    for (auto it = begin; it != last; ++it)
-      edges.push_back({static_cast<Index>(v), *it});
-  }
-  return edges;
-}
-
 /// Quantiles of the logarithm of some values.
 DistortionQuantiles quantiles(std::vector<double> values) {
   if (values.empty())
