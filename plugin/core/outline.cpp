@@ -166,7 +166,7 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
       tabulate_lengths(geometry, background, outline.vertices.size(), monitor);
   const Protection protection =
       protect_corners(geometry, background, lengths, hausdorff);
-  outline.n_balls = protection.n_balls;
+  outline.n_balls = static_cast<std::size_t>(protection.n_balls);
   outline.n_unprotected = protection.given_up;
   for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
     const Curve &curve = geometry.curves[c];
@@ -198,6 +198,11 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
     changed = changed || outline.vertices[i].x != x;
     outline.vertices[i] = background.vertex(x, outline.background[i]);
   };
+  const auto give_up = [&](Index ball) {
+    for (CurveEdge &edge : outline.edges)
+      if (edge.ball == ball)
+        edge.ball = none;
+  };
   for (Index e : edges) {
     const CurveEdge edge = outline.edges[static_cast<std::size_t>(e)];
     Curve &curve = geometry.curves[static_cast<std::size_t>(edge.curve)];
@@ -211,6 +216,7 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
       const auto v = static_cast<Index>(outline.vertices.size()) - 1;
       outline.edges[static_cast<std::size_t>(e)] = {edge.curve, edge.t0, t, edge.v0, v};
       outline.edges.push_back({edge.curve, t, edge.t1, v, edge.v1});
+      give_up(edge.ball);
       changed = true;
     } else {
       const double segment = std::floor(edge.t0);
@@ -219,11 +225,23 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
         if (other.curve == edge.curve)
           for (const auto &[v, t] :
                {std::pair(other.v0, other.t0), {other.v1, other.t1}})
-            if (segment < t && t < segment + 1)
+            if (segment < t && t < segment + 1) {
               move(v, curve.at(t));
+              give_up(other.ball);
+            }
     }
   }
   return changed;
+}
+
+std::size_t count_balls(std::span<const CurveEdge> edges) {
+  std::vector<Index> balls;
+  for (const CurveEdge &edge : edges)
+    if (edge.ball != none)
+      balls.push_back(edge.ball);
+  std::sort(balls.begin(), balls.end());
+  return static_cast<std::size_t>(std::unique(balls.begin(), balls.end()) -
+                                  balls.begin());
 }
 
 std::vector<Index> edges_before(const Geometry &geometry, const Outline &outline,

@@ -7,6 +7,7 @@
 #include "protection.h"
 #include "triangulation.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct Outline {
   std::vector<Index> background; ///< where its metric was found
   std::vector<CurveEdge> edges;
   std::vector<FreePoint> free_points; ///< `point` is a vertex here
-  Index n_balls = 0;                  ///< protecting balls of sharp corners
+  std::size_t n_balls = 0;            ///< protecting balls of sharp corners
   std::size_t n_unprotected = 0;      ///< sharp corners without one
 };
 
@@ -48,9 +49,13 @@ struct Outline {
 
 /// Brings edges nearer to the geometry's own polyline, which is valid: an edge that
 /// spans points of the geometry is split at one, another becomes a piece of a straight
-/// segment. @returns whether anything changed.
+/// segment. A protecting ball whose shell would not stay one is given up.
+/// @returns whether anything changed.
 bool retreat(Geometry &geometry, const Background<2> &background, Outline &outline,
              const std::vector<Index> &edges);
+
+/// The protecting balls that the edges cross.
+[[nodiscard]] std::size_t count_balls(std::span<const CurveEdge> edges);
 
 /// Edges that part x from its place beside the geometry's polyline: x lies between them
 /// and the polyline.

@@ -106,7 +106,10 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
     out.counts["trials"] = static_cast<double>(agreed.trials);
     out.counts["relocations"] = static_cast<double>(agreed.moves);
   }
-  out.agreement = agreeing ? "done"
+  const bool stopped = monitor.reason() != StopReason::finished;
+  out.agreement = agreeing && stopped
+                      ? std::string("stopped by ") + name_of(monitor.reason())
+                  : agreeing ? "done"
                   : is_pure || settings.agreement == AgreementMode::off
                       ? "off"
                       : "skipped: the metric varies too fast, ln gamma of 1 % of "
@@ -158,11 +161,12 @@ RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
   Outline outline =
       make_outline(geometry, background, settings.hausdorff_number, monitor);
 
-  out.counts["protected_corners"] = static_cast<double>(outline.n_balls);
-  out.counts["unprotected_corners"] = static_cast<double>(outline.n_unprotected);
-
   watch.phase("size");
+  const std::size_t n_sharp = outline.n_balls + outline.n_unprotected;
   MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));
+  const std::size_t n_protected = count_balls(on_curves.curve_edges);
+  out.counts["protected_corners"] = static_cast<double>(n_protected);
+  out.counts["unprotected_corners"] = static_cast<double>(n_sharp - n_protected);
   Workspace w{on_curves, geometry, background, settings.hausdorff_number};
   Legaliser legaliser(w.mesh);
   // the pure mode starts from the boundary alone
