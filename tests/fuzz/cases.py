@@ -190,6 +190,8 @@ def _certify(done, found):
     found.numbers["gamma90"] = gamma
     if found.star_ok == 1:
         found.reason = "certified"
+    elif (raw["star_ok"].astype(bool) | raw["exempt"].astype(bool)).all():
+        found.reason = "certified but for exempt vertices"
     elif done.report.statistics["q_min"] < 0.1:
         found.reason = "walls finer than the metric, or corners: q_min < .1"
     elif np.log(gamma) > 0.2:

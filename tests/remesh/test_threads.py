@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from meshes import annulus, square, two_regions
-from shapes import arc_metric, linear_metric, rotating_metric
+from shapes import arc_metric, linear_metric, rotating_metric, sectors, stretched
 
 import anistar
 from anistar.remesh import RemeshOptions, remesh
@@ -35,23 +35,49 @@ def turning_interface():
     return mesh, rotating_metric(mesh, 9000)
 
 
+def sharp_corners():
+    mesh = sectors([9, 31, 17, 24, 40, 12, 35, 28], np.linspace(1, 0.7, 9))
+    angle = mesh.points @ [9.0, -5.0]
+    return mesh, stretched(0.024, 0.006, angle)
+
+
 def bytes_of(done):
     mesh = done.mesh
     arrays = (mesh.points, mesh.cells, mesh.cell_tags, mesh.facets, mesh.facet_tags, done.metric)
     return [array.tobytes() for array in arrays]
 
 
-@pytest.mark.parametrize("make", [layer, graded_layer, curved_boundary, turning_interface])
-def test_the_bytes_do_not_depend_on_the_number_of_threads(make):
+@pytest.mark.parametrize(
+    ("make", "options"),
+    [
+        (layer, {}),
+        (graded_layer, {}),
+        (curved_boundary, {}),
+        (turning_interface, {}),
+        (sharp_corners, {"agreement": True}),
+        (sharp_corners, {"agreement": True, "until_consistent": True}),
+    ],
+)
+def test_the_bytes_do_not_depend_on_the_number_of_threads(make, options):
     mesh, M = make()
-    one = remesh(mesh, M, RemeshOptions(threads=1))
+    one = remesh(mesh, M, RemeshOptions(threads=1, **options))
     assert one.mesh.n_points > SEVERAL_BLOCKS
     assert anistar.validate(one.mesh) == []
     for threads in (2, 3, 4):
-        many = remesh(mesh, M, RemeshOptions(threads=threads))
+        many = remesh(mesh, M, RemeshOptions(threads=threads, **options))
         assert bytes_of(many) == bytes_of(one)
+        assert many.report.consistency == one.report.consistency
         assert many.report.counts == one.report.counts
         assert many.report.statistics == one.report.statistics
+
+
+def test_the_case_of_sharp_corners_moves_vertices_and_inserts_until_consistent():
+    mesh, M = sharp_corners()
+    done = remesh(mesh, M, RemeshOptions(agreement=True, until_consistent=True))
+    assert anistar.validate(done.mesh, mesh) == []
+    assert done.report.counts["protected_corners"] >= 8
+    assert done.report.counts["relocations"] > 0
+    assert done.report.consistency["inconsistency"] > 0
 
 
 def test_a_vertex_budget_is_met_at_the_same_vertex_by_any_number_of_threads():
