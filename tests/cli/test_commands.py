@@ -13,6 +13,7 @@ from anistar.cli import main
 from anistar.cli.main import COMMANDS
 from anistar.fields import Field
 from anistar.formats import read, read_metric, write, write_metric
+from anistar.mesh import Mesh
 from anistar.metric import complexity
 from anistar.validation import validate
 
@@ -288,15 +289,34 @@ def test_check_tells_what_reading_had_to_change(folder, capsys):
     assert report["unit_edges"] is None
 
 
-def test_transfer_shows_the_integral_of_each_component(folder, capsys):
+def test_transfer_shows_what_each_component_was_before_and_after(folder, capsys):
     mesh = square(10)
     write("v.vtu", mesh, {"v": mesh.points * [1.0, 3.0]})
     assert run("transfer v.vtu in.vtu -o out.vtu") == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split() for line in lines if "v[" in line] == [
-        ["v[0]", "0.5", "0.5"],
-        ["v[1]", "1.5", "1.5"],
-    ]
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    start = lines.index(["v[0]", "before", "0.5", "0", "1", "-"])
+    assert lines[start + 1] == ["after", "0.5", "0", "1", "-"]
+    assert lines[start + 2] == ["v[1]", "before", "1.5", "0", "3", "-"]
+
+
+def test_transfer_measures_the_l2_difference_on_request(folder, capsys):
+    write("coarse.vtu", square(2))
+    words = "transfer in.vtu coarse.vtu -o out.vtu"
+    assert run(f"{words} --json") == 0
+    assert report_of(capsys)["changes"]["w"]["l2_difference"] is None
+    assert run(f"{words} --l2-difference --json") == 0
+    (measured,) = report_of(capsys)["changes"]["w"]["l2_difference"]
+    assert measured > 1e-3
+    assert run(f"{words} --l2-difference") == 0
+    assert f"{measured:.4g}" in capsys.readouterr().out
+
+
+def test_transfer_says_that_regions_were_ignored(folder, capsys):
+    base = square(5)
+    tags = np.arange(base.n_cells) % 2
+    write("regions.vtu", Mesh(points=base.points, cells=base.cells, cell_tags=tags))
+    assert run("transfer in.vtu regions.vtu -o out.vtu") == 0
+    assert "regions were ignored" in capsys.readouterr().out
 
 
 def test_remesh_carries_the_fields_that_are_not_its_metric(folder, capsys):

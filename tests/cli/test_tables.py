@@ -48,7 +48,7 @@ SAID = {
     "adapt": "points",
     "metric": "normalised",
     "remesh": "points",
-    "transfer": "integral before",
+    "transfer": "L2 difference",
     "study": "L2 error",
     "convert": "49 points, 72 cells",
 }

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from ..formats import read, write
-from ..transfer import METHODS, TransferOptions, TransferReport, transfer
+from ..transfer import METHODS, FieldChange, TransferOptions, TransferReport, transfer
 from . import console
 from .files import writable
 from .options import add_outside_option
 
 SUMMARY = "carry the fields of one mesh to another"
+COLUMNS = ("field", "", "integral", "min", "max", "L2 difference")
 EXAMPLE = "anistar transfer old.vtu new.vtu -o out.vtu --method conservative"
 
 
@@ -26,6 +28,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--threads", type=int, default=1, help="for the intersection of the meshes (default 1)"
     )
     parser.add_argument("--log-euclidean", action="store_true", help="carry logarithms of tensors")
+    parser.add_argument(
+        "--l2-difference",
+        action="store_true",
+        help="measure the L2 norm of the change, which intersects the meshes; the projections do "
+        "it anyway",
+    )
     add_outside_option(parser, "raise")
 
 
@@ -37,6 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
         outside=arguments.outside,
         log_euclidean=arguments.log_euclidean,
         threads=arguments.threads,
+        l2_difference=arguments.l2_difference or None,
     )
     source, fields = read(arguments.source)
     target, _ = read(arguments.target)
@@ -45,13 +54,25 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         console.show_json(done.report)
         return 0
-    rows = [
-        [name if len(change.integral[0]) == 1 else f"{name}[{index}]", before, after]
-        for name, change in done.report.changes.items()
-        for index, (before, after) in enumerate(zip(*change.integral, strict=True))
-    ]
-    console.show_table(_title(done.report), ["field", "integral before", "integral after"], rows)
+    rows = [row for name, change in done.report.changes.items() for row in _rows(name, change)]
+    console.show_table(_title(done.report), COLUMNS, rows)
+    if done.report.unmatched_tags:
+        listed = ", ".join(map(str, done.report.unmatched_tags))
+        console.say(f"only one of the meshes has the region tags {listed}: regions were ignored")
     return 0
+
+
+def _rows(name: str, change: FieldChange) -> list[list[Any]]:
+    """Return two rows for each component of a field, before and after."""
+    measured = (change.integral, change.minimum, change.maximum)
+    count = len(change.integral[0])
+    rows = []
+    for k in range(count):
+        before, after = ([pair[when][k] for pair in measured] for when in (0, 1))
+        difference = change.l2_difference[k] if change.l2_difference else None
+        rows.append([name if count == 1 else f"{name}[{k}]", "before", *before, None])
+        rows.append(["", "after", *after, difference])
+    return rows
 
 
 def _title(report: TransferReport) -> str:
