@@ -75,7 +75,8 @@ def bounded(projector: Projector, field: Loaded) -> Float:
     the mean of the cell [3]. Continuous P1 values are the lumped projection, a mean of source
     values, plus as much of the fluxes that lead from there to the L2 projection as the bounds
     admit [1, 2, 4]; what was cut is offered again until nothing more fits. What then remains of
-    the integral of a region is spread over its inner values in proportion to their room.
+    the integral of a region is spread over its inner values in proportion to their room, and
+    what is missing of the total because a region has too little of that, over all values.
 
     References
     ----------
@@ -176,7 +177,19 @@ def _refilled(projector: Projector, field: Loaded, values: Float, bounds: Bounds
     rise = _part_of_room(defect, own @ up)
     fall = _part_of_room(defect, own @ down)
     inner = (own > 0).astype(np.float64).T
-    return bounds.clipped(values + (inner @ rise) * up + (inner @ fall) * down)
+    values = bounds.clipped(values + (inner @ rise) * up + (inner @ fall) * down)
+    return _total_refilled(projector, field, values, bounds)
+
+
+def _total_refilled(projector: Projector, field: Loaded, values: Float, bounds: Bounds) -> Float:
+    """Spread what regions without inner values miss over all values, for the sake of the total."""
+    moments = projector.lumped_mass(field.on)
+    if projector.functionals(field.on)[1].shape[0] == 1:
+        return values
+    defect = projector.integrals(field).sum(axis=0) - moments @ values
+    up, down = bounds.high - values, bounds.low - values
+    rise, fall = (_part_of_room(defect, moments @ room) for room in (up, down))
+    return bounds.clipped(values + rise * up + fall * down)
 
 
 def _own_entries(functionals: csr_array) -> csr_array:
