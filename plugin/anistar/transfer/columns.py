@@ -38,7 +38,8 @@ def as_columns(field: Field, *, logarithmic: bool) -> Float:
 
 def power_of_two(columns: Float) -> float:
     """Return a scale that keeps squares of the values in range and changes no digit of them."""
-    return float(2.0 ** math.frexp(float(np.abs(columns).max(initial=0.0)))[1])
+    # one less than the exponent of frexp, which is above that of the largest number
+    return math.ldexp(1.0, math.frexp(float(np.abs(columns).max(initial=0.0)))[1] - 1)
 
 
 def from_columns(columns: Float, like: Field, *, logarithmic: bool) -> Field:
