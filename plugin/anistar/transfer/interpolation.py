@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -15,13 +16,14 @@ from .labels import majority
 from .location import Places, located_nodes, located_points
 from .nodes import node_basis
 from .options import TransferOptions
-from .regions import common_regions
+from .regions import Regions, common_regions
 
 
 class Interpolator:
     """Interpolation between two meshes; every kind of node is located once.
 
-    P1 fields are interpolated linearly in the source cell that holds the target point. Values
+    P1 fields are interpolated linearly in the source cell that holds the target point, in the
+    region of the point where all its cells are of one region. Values
     in cells are those of the source cell that holds the target's centroid, and values at the
     nodes of cells those of the source's polynomial there; both come from the region of the
     target cell.
@@ -30,6 +32,11 @@ class Interpolator:
     def __init__(self, source: Mesh, target: Mesh, options: TransferOptions) -> None:
         self.source, self.target, self.options = source, target, options
         self._found: dict[tuple[str, int], Places] = {}
+
+    @cached_property
+    def regions(self) -> Regions:
+        """The regions of the two meshes."""
+        return common_regions(self.source, self.target)
 
     @property
     def points_outside(self) -> int:
@@ -46,12 +53,12 @@ class Interpolator:
         key = (on, count)
         if key not in self._found:
             self._found[key] = (
-                located_points(self.source, self.target, self.options)
+                located_points(self.source, self.target, self.regions, self.options)
                 if on == "points"
                 else located_nodes(
                     self.source,
                     self.target,
-                    common_regions(self.source, self.target),
+                    self.regions,
                     count,
                     self.options,
                 )
@@ -98,4 +105,6 @@ class Interpolator:
 def _by_rows(weights: Float, columns: Int, size: int) -> csr_array:
     n, width = weights.shape
     starts = np.arange(0, n * width + 1, width)
-    return csr_array((weights.ravel(), columns.ravel(), starts), shape=(n, size))
+    matrix = csr_array((weights.ravel(), columns.ravel(), starts), shape=(n, size), copy=True)
+    matrix.eliminate_zeros()  # a value that weighs nothing may be NaN
+    return matrix

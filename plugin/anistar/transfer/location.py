@@ -55,10 +55,33 @@ def locator(mesh: Mesh, cells: Int | None = None) -> Any:
     return build(np.ascontiguousarray(mesh.points[used]), chosen)
 
 
-def located_points(source: Mesh, target: Mesh, options: TransferOptions) -> Places:
-    """Locate the points of the target; continuous fields have one value there."""
+def located_points(
+    source: Mesh, target: Mesh, regions: Regions, options: TransferOptions
+) -> Places:
+    """Locate the points of the target; continuous fields have one value there.
+
+    A point inside a region that lies in another one of the source, because an interface is
+    curved, takes the nearest place of its own region.
+    """
     cells, weights, distance = locator(source).locate(np.ascontiguousarray(target.points))
+    own = _own_regions(target, regions)
+    strays = (own >= 0) & (regions.source[cells] != own)
+    for region in np.unique(own[strays]):
+        chosen = np.flatnonzero(strays & (own == region))
+        sources = np.flatnonzero(regions.source == region).astype(np.int32)
+        found, at, _ = locator(source, sources).locate(np.ascontiguousarray(target.points[chosen]))
+        cells[chosen], weights[chosen] = sources[found], at
     return _places(source, target.points, cells, weights, distance, "point", options)
+
+
+def _own_regions(mesh: Mesh, regions: Regions) -> Int:
+    """Return the region of each target point, -1 where its cells are of several."""
+    lowest = np.full(mesh.n_points, regions.count, np.int32)
+    highest = np.full(mesh.n_points, -1, np.int32)
+    for corner in mesh.cells.T:
+        np.minimum.at(lowest, corner, regions.target)
+        np.maximum.at(highest, corner, regions.target)
+    return np.where(lowest == highest, highest, -1)
 
 
 def located_nodes(

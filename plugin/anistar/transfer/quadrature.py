@@ -13,7 +13,7 @@ from ..metric import check_metric, interpolated
 from ..topology import Float, Int, Long
 from .location import Places, located_coordinates
 from .options import Outside, TransferOptions
-from .regions import common_regions
+from .regions import common_regions, warn_of_unmatched
 
 
 def transfer_quadrature(
@@ -72,6 +72,7 @@ def transfer_quadrature(
         )
     tensors = _metric_at(target, wanted, metric)
     regions = common_regions(source, target)
+    warn_of_unmatched(regions)
     places = located_coordinates(source, target, regions, wanted, TransferOptions(outside=outside))
     points = np.einsum("qk,mkd->mqd", given, source.points[source.cells])
     queries = np.einsum("qk,mkd->mqd", wanted, target.points[target.cells])

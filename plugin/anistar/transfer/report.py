@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -87,6 +87,11 @@ class TransferReport:
         Largest distance of a target point from the source, in mesh units.
     coverage : Coverage or None
         How well the meshes cover each other; None where they were not intersected.
+    regions : tuple of int
+        Tags of the regions that were carried each to its own; empty where the meshes do not have
+        the same tags.
+    unmatched_tags : tuple of int
+        Region tags that only one of the meshes has, because of which fields crossed interfaces.
     changes : dict of str to FieldChange
         Integrals and extrema before and after; labels have none.
     seconds : float
@@ -98,12 +103,14 @@ class TransferReport:
     points_outside: int
     max_distance: float
     coverage: Coverage | None
+    regions: tuple[int, ...]
+    unmatched_tags: tuple[int, ...]
     changes: dict[str, FieldChange]
     seconds: float
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
-        names = ("method", "outside", "points_outside", "max_distance", "coverage", "seconds")
+        names = [field.name for field in fields(self) if field.name != "changes"]
         result: dict[str, Any] = as_builtin({name: getattr(self, name) for name in names})
         result["changes"] = {name: change.as_dict() for name, change in self.changes.items()}
         return result

@@ -24,7 +24,7 @@ from .loading import Overlapped, overlapped
 from .measure import integral, integral_by_region
 from .options import Outside, TransferOptions
 from .projection import Loaded, Projector
-from .regions import Regions, common_regions
+from .regions import Regions, common_regions, warn_of_unmatched
 from .report import FieldChange, TransferReport
 
 
@@ -62,7 +62,9 @@ def transfer(
     allows. Labels are never averaged: the one with the largest weight wins.
 
     Values in cells and at nodes of cells may jump between regions; they are carried from each
-    region to that of the same tag where both meshes have the same region tags.
+    region to that of the same tag where both meshes have the same region tags. Interpolation
+    keeps points inside a region, of which all cells are of it, to that region as well. Where the
+    tags differ, a warning is logged and the report names them.
 
     Parameters
     ----------
@@ -91,6 +93,8 @@ def transfer(
         raise ValueError(f"cannot transfer from a {source.dim}D mesh to a {target.dim}D mesh")
     options = _merged(options, method, outside)
     checked = as_fields(source, fields)
+    regions = common_regions(source, target)
+    warn_of_unmatched(regions)
     done = (
         _interpolated(source, checked, target, options)
         if options.method == "interpolate"
@@ -106,12 +110,15 @@ def transfer(
         points_outside=done.points_outside,
         max_distance=done.max_distance,
         coverage=seen.overlap.coverage() if seen is not None else None,
+        regions=regions.tags,
+        unmatched_tags=regions.unmatched,
         changes={
             name: _change(
                 source,
                 field,
                 target,
                 done.fields[name],
+                regions,
                 _l2_difference(seen, name, done.fields[name]) if wanted else None,
             )
             for name, field in checked.items()
@@ -193,6 +200,7 @@ def _change(
     before: Field,
     target: Mesh,
     after: Field,
+    regions: Regions,
     difference: list[float] | None,
 ) -> FieldChange:
     pairs = ((source, before), (target, after))
@@ -201,7 +209,7 @@ def _change(
         integral=_pair(*(integral(mesh, field) for mesh, field in pairs)),
         minimum=_pair(*(field.values.min(axis=axes) for _, field in pairs)),
         maximum=_pair(*(field.values.max(axis=axes) for _, field in pairs)),
-        defects=_defects(source, before, target, after, common_regions(source, target)),
+        defects=_defects(source, before, target, after, regions),
         l2_difference=difference,
     )
 
