@@ -1,11 +1,14 @@
 """Meshes follow a solution in time; they are kept while they fit."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from meshes import square
 
 import anistar
 from anistar.series import SeriesWriter
+from anistar.transfer import integral
 from anistar.unsteady import UnsteadyOptions, needs_adaptation, unsteady_loop
 
 ADAPT = anistar.AdaptOptions.from_dict({"target_complexity": 200})
@@ -72,6 +75,37 @@ def test_fields_come_across_once_for_each_new_mesh():
     assert done.windows[0].transfer is None  # the first is evaluated, not transferred
     assert done.windows[1].transfer["points_outside"] == 0
     assert done.as_dict()["windows"][1]["begin"] == pytest.approx(0.2)
+
+
+def test_the_default_transfer_loses_no_mass_and_makes_no_new_extrema():
+    def drifting(mesh, fields, begin, end):
+        return {"u": wave(mesh.points, end), "dye": fields["dye"]}
+
+    def dyed(mesh):
+        dye = np.linalg.norm(mesh.points - [0.5, 0.4], axis=1) < 0.25
+        return {"u": wave(mesh.points, 0.0), "dye": dye.astype(float)}
+
+    default = UnsteadyOptions().adapt
+    assert default.transfer.method == "bounded"
+    adapt = dataclasses.replace(
+        default, metric=anistar.MetricOptions(target_complexity=200), metric_fields=("u",)
+    )
+    shown = []
+    done = unsteady_loop(
+        drifting,
+        square(10),
+        dyed,
+        TIMES,
+        UnsteadyOptions(adapt=adapt, window=2, passes=1),
+        callback=shown.append,
+    )
+    assert sum(window.transfer is not None for window in done.windows) >= 3
+    masses = [float(integral(at.mesh, anistar.Field(at.fields["dye"]))) for at in shown]
+    assert np.ptp(masses[1:]) < 1e-12 * masses[1]
+    for instant in shown:
+        assert anistar.validate(instant.mesh) == []
+        assert instant.fields["dye"].min() >= 0
+        assert instant.fields["dye"].max() <= 1
 
 
 def test_initial_values_on_the_first_mesh_only_are_transferred():

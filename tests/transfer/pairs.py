@@ -83,6 +83,21 @@ def flattened(mesh, aspect, angle=0.6):
     return Mesh(points=points @ turn.T + 3, cells=mesh.cells)
 
 
+def thin_cells(n, angle, seed, aspect=1e3):
+    """The unit square with cells up to `aspect` times longer, in the direction `angle`, than wide.
+
+    They are Delaunay where lengths across that direction count `aspect` times as much.
+    """
+    base = scattered(n, seed)
+    along = np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([-np.sin(angle), np.cos(angle)])
+    seen = np.stack([base.points @ along, aspect * (base.points @ across)], axis=1)
+    cells = Delaunay(seen, qhull_options="QJ Pp").simplices
+    volumes = cell_volumes(base.points, cells)
+    cells[volumes < 0] = cells[volumes < 0][:, ::-1]
+    return checked(Mesh(points=base.points, cells=cells[volumes != 0]))
+
+
 def checked(mesh):
     assert validate(mesh) == []
     return mesh

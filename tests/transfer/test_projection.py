@@ -13,6 +13,7 @@ from pairs import (
     pairs,
     scattered,
     smooth,
+    thin_cells,
     with_regions,
 )
 
@@ -21,6 +22,8 @@ from anistar.interpolation_error import l2_error
 from anistar.mesh import Mesh
 from anistar.topology import cell_volumes
 from anistar.transfer import integral
+from anistar.transfer.measure import integral_by_region
+from anistar.transfer.regions import common_regions
 
 PROJECTIONS = ("conservative", "bounded")
 
@@ -154,6 +157,38 @@ def test_a_hundred_transfers_there_and_back_lose_no_mass(dim, method):
             assert u.min() >= 0
             assert u.max() <= 1
     assert integral(meshes[0], Field(u)) == pytest.approx(mass, rel=1e-10)
+
+
+@pytest.mark.parametrize("method", PROJECTIONS)
+def test_a_hundred_transfers_keep_every_kind_of_field_in_every_region(method):
+    meshes = with_regions(halves(3, 0)), with_regions(halves(4, 1))
+    start = every_kind(meshes[0], disc_indicator)
+    fields = start
+    for step in range(100):
+        source, target = meshes[step % 2], meshes[1 - step % 2]
+        fields = transfer(source, fields, target, method=method).fields
+    regions = common_regions(*meshes[:1] * 2)
+    for name, field in start.items():
+        before, after = (
+            integral_by_region(meshes[0], f, regions.source, regions.count)
+            for f in (field, fields[name])
+        )
+        assert np.abs(after - before).max() < 1e-10 * before.sum()
+
+
+@pytest.mark.parametrize("method", PROJECTIONS)
+def test_pairs_of_thin_cells_that_cross_keep_integrals_and_linear_fields(method):
+    source, target = thin_cells(12, 0.4, 0), thin_cells(14, 1.7, 1)
+    for mesh in (source, target):
+        corners = mesh.points[mesh.cells]
+        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1).max(axis=1)
+        aspect = sides**2 / (2 * cell_volumes(mesh.points, mesh.cells))
+        assert np.quantile(aspect, 0.95) > 400
+        assert aspect.max() > 1e3
+    done = transfer(source, every_kind(source, linear), target, method=method)
+    for name in done.fields:
+        assert relative_defect(done.report, name) < 1e-12
+    assert np.abs(done.fields["p1"].values - linear(target.points)).max() < 1e-9
 
 
 @pytest.mark.parametrize("aspect", [1e3, 1e6])
