@@ -21,6 +21,7 @@ def curvature_metric(
     *,
     points_per_circle: float | None = None,
     chord_error: float | None = None,
+    hausdorff_number: float | None = None,
     tags: int | Sequence[int] | None = None,
     h_min: float | None = None,
     h_max: float | None = None,
@@ -30,7 +31,8 @@ def curvature_metric(
 
     Along each principal direction of the boundary with radius of curvature R the size is
     ``2 pi R / points_per_circle``, or the chord that stays within `chord_error` of the circle,
-    ``2 sqrt(e (2 R - e))``. Normal to the boundary, and away from it, it is `h_max`: intersect
+    ``2 sqrt(e (2 R - e))``, or the one that stays within `hausdorff_number` times its length,
+    ``8 R e / (1 + 4 e^2)``. Normal to the boundary, and away from it, it is `h_max`: intersect
     the result with the metric of the solution, and grade.
 
     Parameters
@@ -40,7 +42,10 @@ def curvature_metric(
     points_per_circle : float, optional
         Edges that a full circle of the local radius would get, at least 3.
     chord_error : float, optional
-        Largest distance of a chord from the boundary, a length. Give one of the two.
+        Largest distance of a chord from the boundary, a length.
+    hausdorff_number : float, optional
+        The same relative to the length of the chord, in (0, 1/2]: `remesh` has this bound. Give
+        one of the three.
     tags : int or sequence of int, optional
         Facet tags that count; all if None.
     h_min, h_max : float, optional
@@ -65,7 +70,7 @@ def curvature_metric(
        geometric metric. Differs from [1]_ in the normal size.
     """
     n, d = mesh.points.shape
-    size = _size_rule(points_per_circle, chord_error)
+    size = _size_rule(points_per_circle, chord_error, hausdorff_number)
     largest = diameter(mesh) if h_max is None else h_max
     smallest = 0.0 if h_min is None else h_min
     if not (np.isfinite(largest) and 0.0 <= smallest <= largest and largest > 0.0):
@@ -82,20 +87,27 @@ def curvature_metric(
 
 
 def _size_rule(
-    points_per_circle: float | None, chord_error: float | None
+    points_per_circle: float | None, chord_error: float | None, hausdorff_number: float | None
 ) -> Callable[[Array], Array]:
     """Return the function from curvatures to sizes."""
-    if (points_per_circle is None) == (chord_error is None):
+    rules = (points_per_circle, chord_error, hausdorff_number)
+    if sum(rule is not None for rule in rules) != 1:
         raise ValueError(
-            "give exactly one of points_per_circle and chord_error: got "
-            f"{points_per_circle} and {chord_error}"
+            "give exactly one of points_per_circle, chord_error and hausdorff_number: got "
+            f"{points_per_circle}, {chord_error} and {hausdorff_number}"
         )
     if points_per_circle is not None:
         if not (np.isfinite(points_per_circle) and points_per_circle >= 3.0):
             raise ValueError(f"points_per_circle must be at least 3, got {points_per_circle}")
         arc = 2.0 * np.pi / points_per_circle
         return lambda curvature: arc * _radius(curvature)
-    assert chord_error is not None  # one of the two is given
+    if hausdorff_number is not None:
+        if not 0.0 < hausdorff_number <= 0.5:
+            raise ValueError(f"hausdorff_number must be in (0, 1/2], got {hausdorff_number}")
+        # sagitta s and half chord c of a circle: c^2 = s (2 R - s), with s = 2 e c
+        of_radius = 8.0 * hausdorff_number / (1.0 + 4.0 * hausdorff_number**2)
+        return lambda curvature: of_radius * _radius(curvature)
+    assert chord_error is not None  # one of the three is given
     error = chord_error
     if not (np.isfinite(error) and error > 0.0):
         raise ValueError(f"chord_error must be positive, got {error}")

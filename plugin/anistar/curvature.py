@@ -1,4 +1,4 @@
-"""How curved the surfaces of a 3D mesh are, and the sizes that follow them."""
+"""How curved the surfaces of a 3D mesh are."""
 
 from __future__ import annotations
 
@@ -51,42 +51,6 @@ def surface_curvature(mesh: Mesh, *, ridge_angle: float = 45.0) -> Float:
         raise ValueError(f"surfaces have a curvature in 3D; this mesh has dimension {mesh.dim}")
     surface = smooth_surface(mesh, ridge_angle=ridge_angle)
     return surface.curvature(mesh.n_points)
-
-
-def curvature_metric(
-    mesh: Mesh, *, hausdorff_number: float = 0.1, ridge_angle: float = 45.0
-) -> Float:
-    """Return the metric whose unit edges follow the surfaces to a relative accuracy.
-
-    An edge of length h along a curve of curvature k leaves it by ``k h**2 / 8``; the sizes are
-    those where this is `hausdorff_number` times h. Intersect it with another metric and grade the
-    result: away from the surfaces, and across them, it only asks for the size of the domain.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        A 3D mesh.
-    hausdorff_number : float
-        Distance of the surface from an edge along it, relative to the edge's length, in (0, 1].
-    ridge_angle : float
-        Degrees; a sharper turn between two facets is a ridge.
-
-    Returns
-    -------
-    (n, 3, 3) float64
-        In 1 / length**2.
-
-    Raises
-    ------
-    ValueError
-        If the mesh is not 3D, or `hausdorff_number` is out of range.
-    """
-    if not 0 < hausdorff_number <= 1:
-        raise ValueError(f"hausdorff_number must be in (0, 1], got {hausdorff_number}")
-    bend = surface_curvature(mesh, ridge_angle=ridge_angle) / (8 * hausdorff_number)
-    largest = np.ptp(mesh.points, axis=0).max()
-    M = bend @ bend + np.eye(3) / largest**2
-    return np.asarray(0.5 * (M + M.transpose(0, 2, 1)))
 
 
 def smooth_surface(mesh: Mesh, *, ridge_angle: float = 45.0) -> _core.Surface3:

@@ -114,6 +114,16 @@ def test_a_chord_of_that_size_stays_within_the_chord_error():
     np.testing.assert_allclose(3.0 - np.sqrt(9.0 - h**2 / 4), 0.01, rtol=1e-9)
 
 
+def test_a_chord_of_that_size_stays_within_the_hausdorff_number():
+    t = 2 * np.pi * np.arange(100) / 100
+    mesh = polygon(3.0 * np.stack([np.cos(t), np.sin(t)], axis=1))
+    for relative in (0.01, 0.1, 0.5):
+        M = metric.curvature_metric(mesh, hausdorff_number=relative)
+        h = np.linalg.eigvalsh(M)[:, -1] ** -0.5
+        sagitta = 3.0 - np.sqrt(np.maximum(9.0 - h**2 / 4, 0.0))
+        np.testing.assert_allclose(sagitta / h, relative, rtol=1e-3)
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 def test_flat_sides_their_ridges_and_corners_ask_for_nothing(dim):
     mesh = walled(box(6, dim))
@@ -165,9 +175,10 @@ def test_curvature_may_be_asked_of_some_tags_only():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({}, "exactly one of points_per_circle and chord_error: got None and None"),
+        ({}, "exactly one of points_per_circle, chord_error and hausdorff_number: got None"),
         ({"points_per_circle": 2}, "points_per_circle must be at least 3, got 2"),
         ({"chord_error": 0.0}, r"chord_error must be positive, got 0\.0"),
+        ({"hausdorff_number": 0.0}, r"hausdorff_number must be in \(0, 1/2\], got 0\.0"),
         ({"chord_error": 1.0, "h_min": 9.0}, r"0 <= h_min <= h_max, got 9\.0 and 1\.41"),
         ({"chord_error": 1.0, "ridge_angle": 0.0}, r"ridge_angle must be in \(0, 180\]"),
     ],
