@@ -76,8 +76,14 @@ def estimate(mesh: MeshLike, M: Array) -> Estimate:
     """
     n, d = mesh.points.shape
     M = check_metric(M, n_points=n, dim=d)
+    return estimate_with(mesh, M, distortion(mesh, M))
+
+
+def estimate_with(mesh: MeshLike, M: Array, distortions: Array) -> Estimate:
+    """Estimate the mesh of a checked metric whose distortion is known, see `estimate`."""
+    n, d = mesh.points.shape
     C = complexity(mesh, M)
-    elements = C * elements_per_complexity(mesh, M)
+    elements = C * elements_per_complexity(mesh, M, distortions)
     vertices = VERTICES_PER_COMPLEXITY * C
     if d == 2:
         p, q = _boundary(mesh.cells).T
@@ -87,20 +93,24 @@ def estimate(mesh: MeshLike, M: Array) -> Estimate:
     return Estimate(vertices=vertices, elements=elements, memory=vertices * BYTES_PER_VERTEX[d])
 
 
-def elements_per_complexity(mesh: MeshLike, M: Array) -> float:
-    """Return the expected elements of a unit mesh over the complexity of a checked metric."""
+def elements_per_complexity(mesh: MeshLike, M: Array, distortions: Array | None = None) -> float:
+    """Return the expected elements of a unit mesh over the complexity of a checked metric.
+
+    `distortions` are those of the metric, where they are known.
+    """
     d = mesh.points.shape[1]
+    values = distortion(mesh, M) if distortions is None else distortions
     return REAL_ELEMENTS_PER_COMPLEXITY[d] * (
-        1.0 + ELEMENTS_PER_DISTORTION[d] * mean_distortion(mesh, M)
+        1.0 + ELEMENTS_PER_DISTORTION[d] * mean_distortion(mesh, M, values)
     )
 
 
-def mean_distortion(mesh: MeshLike, M: Array) -> float:
+def mean_distortion(mesh: MeshLike, M: Array, distortions: Array) -> float:
     """Mean of the distortion over the edges, each weighted by the unit edges that it stands for."""
     edges = mesh_edges(mesh)
     density = point_volumes(mesh, cell_volumes(mesh)) * np.sqrt(np.linalg.det(M))
     share = density / np.bincount(edges.ravel(), minlength=len(density))
-    return float(np.average(distortion(mesh, M), weights=share[edges].sum(axis=1)))
+    return float(np.average(distortions, weights=share[edges].sum(axis=1)))
 
 
 def _boundary(triangles: NDArray[np.int32]) -> NDArray[np.int32]:

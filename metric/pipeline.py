@@ -13,7 +13,7 @@ from .aim import Aimed, aimed_at
 from .algebra import absolute
 from .combination import intersection_of
 from .distortion import distortion
-from .estimate import estimate
+from .estimate import estimate_with
 from .field_hessians import FieldHessian, hessians_of
 from .finishing import Finishing, finishing_on
 from .ledger import Ledger, Stage
@@ -145,6 +145,6 @@ def _ledger(
         stages=stages,
         gradation_rounds=growth.rounds,
         distortion={**quantiles, "max": float(values.max())},
-        estimate=estimate(mesh, M),
+        estimate=estimate_with(mesh, M, values),
         predicted_error={name: field.error(mesh, M, options.p) for name, field in found.items()},
     )

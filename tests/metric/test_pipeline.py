@@ -1,4 +1,5 @@
 import json
+from importlib import import_module
 from types import SimpleNamespace
 
 import numpy as np
@@ -239,3 +240,17 @@ def test_unknown_and_doubled_options_are_named():
 def test_options_out_of_range_are_refused_with_the_value(options, message):
     with pytest.raises(ValueError, match=message):
         MetricOptions(**options)
+
+
+def test_the_distortion_of_the_result_is_computed_once(monkeypatch):
+    calls = []
+
+    def counted(mesh, M):
+        calls.append(1)
+        return metric.distortion(mesh, M)
+
+    for module in (import_module(f"anistar.metric.{name}") for name in ("estimate", "pipeline")):
+        monkeypatch.setattr(module, "distortion", counted)
+    mesh = box(4, 2)
+    metric.from_fields(mesh, {"u": mesh.points[:, 0] ** 2}, MetricOptions(target_complexity=50.0))
+    assert len(calls) == 1
