@@ -7,6 +7,7 @@ from meshes import cube, square
 from anistar import metric
 from anistar.cli import main
 from anistar.formats import read, read_metric, write, write_metric
+from anistar.validation import validate
 
 
 @pytest.fixture(params=[2, 3])
@@ -122,7 +123,7 @@ def test_a_given_metric_is_repaired_only_when_asked(mesh, capsys, caplog):
         ("--implied --step 0.5", "ratio must be above 1, got 0.5"),
         ("--points-per-circle 9 --chord-error 1", "exactly one of points_per_circle"),
         ("--target-complexity 9 --scale mean", "scale must be a number or one of"),
-        ("--target-complexity 9 --restrict-anisotropy-first maybe", "must be on or off"),
+        ("--target-complexity 9 --restrict-anisotropy-first=maybe", "must be on or off"),
         ("--target-complexity 9 --time-steps 1 --implied", "several inputs are instants"),
     ],
 )
@@ -131,3 +132,35 @@ def test_what_is_out_of_range_is_told_in_one_line(mesh, capsys, words, message):
     said = capsys.readouterr().err
     assert message in said
     assert len(said.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize("value", ["", "on", "1", "off"])
+def test_a_switch_before_the_input_does_not_take_its_name(mesh, value):
+    words = f"metric --restrict-anisotropy-first {value} in.vtu --target-complexity 50 -o m.sol"
+    assert run(words) == 0
+    assert made(mesh).shape == (mesh.n_points, mesh.dim, mesh.dim)
+
+
+def test_algorithm_2_before_the_input_does_not_take_its_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    flat = square(4)
+    write("in.vtu", flat, {"u": flat.points[:, 0] ** 2})
+    assert run("adapt --until-consistent in.vtu --target-complexity 30 -o out.vtu") == 0
+    assert validate(read("out.vtu")[0]) == []
+
+
+@pytest.mark.parametrize("flag", ["isotropic 0", "uniform false", "no_swap=0", "verbosity 5"])
+def test_flags_of_petsc_that_ask_for_what_holds_anyway_are_accepted(mesh, flag):
+    words = "metric in.vtu -dm_plex_metric_target_complexity 50 -o m.sol"
+    assert run(f"{words} -dm_plex_metric_{flag}") == 0
+
+
+def test_flags_of_petsc_that_ask_for_more_are_refused(mesh, capsys):
+    words = "metric in.vtu --target-complexity 50 -o m.sol -dm_plex_metric_isotropic 1"
+    assert run(words) == 2
+    assert "-dm_plex_metric_isotropic" in capsys.readouterr().err
+
+
+def test_a_flag_of_petsc_without_a_value_does_not_take_the_name_of_the_input(mesh):
+    words = "metric -dm_plex_metric_verbosity in.vtu --target-complexity 50 -o m.sol"
+    assert run(words) == 0

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from ..adapt import AdaptOptions
 from ..aliases import MMG
-from ..metric.aliases import our_name, our_value
+from ..metric.aliases import PETSC_PREFIX, asks_nothing, our_name, our_value
 from ..transfer import METHODS, OUTSIDE
 
 Number = TypeVar("Number", int, float)
@@ -51,12 +51,14 @@ def _scale(text: str) -> Any:
         return text
 
 
+_SWITCH = {"on": True, "1": True, "true": True, "off": False, "0": False, "false": False}
+
+
 def _switch(text: str) -> bool:
     """Parse on or off; PETSc says 1, true or nothing."""
-    known = {"on": True, "1": True, "true": True, "off": False, "0": False, "false": False}
-    if text not in known:
+    if text not in _SWITCH:
         raise argparse.ArgumentTypeError(f"must be on or off, not {text!r}")
-    return known[text]
+    return _SWITCH[text]
 
 
 _METRIC: dict[str, tuple[Any, str]] = {
@@ -111,9 +113,9 @@ def _agreement(text: str) -> bool | str:
 
 def _until_consistent(text: str) -> bool | str:
     """Parse the value of the flag of Algorithm 2."""
-    if text != "pure":
+    if text not in ("on", "pure"):
         raise argparse.ArgumentTypeError(f"must be pure or nothing, not {text!r}")
-    return text
+    return text if text == "pure" else True
 
 
 _REMESH: dict[str, tuple[Any, str]] = {
@@ -135,8 +137,11 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "threads": (int, "that work side by side; the result does not depend on it"),
 }
 
-_OPTIONAL_VALUE = {"until_consistent": True, "restrict_anisotropy_first": True}
-"""Flags that may stand alone, and what they then mean."""
+_OPTIONAL_VALUE = {
+    "until_consistent": ("pure",),
+    "restrict_anisotropy_first": tuple(_SWITCH),
+}
+"""Flags that may stand alone, and then mean "on"; else one of these words follows."""
 
 
 def add_metric_options(parser: argparse.ArgumentParser, *, without: Sequence[str] = ()) -> None:
@@ -182,24 +187,50 @@ def adapt_options(arguments: argparse.Namespace, **extra: Any) -> AdaptOptions:
 def canonical_flags(words: Sequence[str]) -> list[str]:
     """Return the words with PETSc's and Mmg's flags replaced by ours.
 
-    ``-hmin``, ``--hmin``, ``--h_min`` and ``-dm_plex_metric_h_min`` all become ``--h-min``.
+    ``-hmin``, ``--hmin``, ``--h_min`` and ``-dm_plex_metric_h_min`` all become ``--h-min``. A flag
+    that may stand alone does so unless one of its values follows, so that it never takes the name
+    of a file. PETSc's flags that ask for what holds anyway are left out.
     """
-    return [_canonical(word) for word in words]
+    found: list[str] = []
+    rest = list(words)
+    while rest:
+        word = rest.pop(0)
+        flag, equals, value = word.partition("=")
+        name = our_name(flag.lstrip("-").replace("-", "_"), MMG)
+        if not flag.startswith("-") or flag == "-p":
+            found.append(word)
+        elif name in (*_METRIC, *_REMESH):
+            alone = not equals and name in _OPTIONAL_VALUE
+            if alone and (not rest or rest[0] not in _OPTIONAL_VALUE[name]):
+                equals, value = "=", "on"
+            found.append(f"--{name.replace('_', '-')}{equals}{value}")
+        elif flag.lstrip("-").startswith(PETSC_PREFIX):
+            follows = not equals and bool(rest) and _petsc_value(rest[0]) is not None
+            given = _petsc_value(rest[0] if follows else value or "true")
+            if not asks_nothing(name, given):
+                found.append(word)
+            elif follows:
+                rest.pop(0)
+        else:
+            found.append(word)
+    return found
 
 
-def _canonical(word: str) -> str:
-    flag, equals, value = word.partition("=")
-    name = our_name(flag.lstrip("-").replace("-", "_"), MMG)
-    if not flag.startswith("-") or name not in (*_METRIC, *_REMESH) or flag == "-p":
-        return word
-    return f"--{name.replace('_', '-')}{equals}{value}"
+def _petsc_value(text: str) -> float | None:
+    """Return the number that PETSc reads in a word, also of switches; None where there is none."""
+    if text in _SWITCH:
+        return float(_SWITCH[text])
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def _add(group: argparse._ArgumentGroup, table: dict[str, tuple[Any, str]]) -> None:
     for name, (kind, text) in table.items():
         optional: dict[str, Any] = {}
         if name in _OPTIONAL_VALUE:
-            optional = {"nargs": "?", "const": _OPTIONAL_VALUE[name]}
+            optional = {"nargs": "?", "const": True}
         group.add_argument(
             f"--{name.replace('_', '-')}",
             dest=name,
