@@ -6,6 +6,7 @@ from meshes import cube, square
 
 from anistar import metric
 from anistar.cli import main
+from anistar.fields import Field
 from anistar.formats import read, read_metric, write, write_metric
 from anistar.validation import validate
 
@@ -164,3 +165,65 @@ def test_flags_of_petsc_that_ask_for_more_are_refused(mesh, capsys):
 def test_a_flag_of_petsc_without_a_value_does_not_take_the_name_of_the_input(mesh):
     words = "metric -dm_plex_metric_verbosity in.vtu --target-complexity 50 -o m.sol"
     assert run(words) == 0
+
+
+@pytest.fixture
+def goal(tmp_path, monkeypatch):
+    """Leave goal.vtu, with a state, its adjoint and indicators of the cells."""
+    monkeypatch.chdir(tmp_path)
+    made = square(12)
+    x = made.points
+    fields = {
+        "u": np.tanh(8 * (x[:, 0] - 0.5)),
+        "z": np.exp(-20 * ((x - 0.25) ** 2).sum(axis=1)),
+        "eta": Field(np.exp(-9 * x[made.cells].mean(axis=1)[:, 1]), "cells"),
+    }
+    write("goal.vtu", made, fields)
+    return read("goal.vtu")
+
+
+def test_an_adjoint_state_makes_the_metric_of_an_output(goal):
+    mesh, fields = goal
+    words = "metric goal.vtu --field u --adjoint z --target-complexity 300 -o m.sol"
+    assert run(f"{words} --gradation-factor off") == 0
+    expected = metric.goal_metric(
+        mesh, fields["u"].values, fields["z"].values, target_complexity=300.0
+    )
+    bounded = metric.bounded(expected, h_max=np.sqrt(2))
+    found = made(mesh)
+    factor = found[:, 0, 0].max() / bounded[:, 0, 0].max()
+    assert 0.5 < factor < 1
+    np.testing.assert_allclose(
+        found, metric.bounded(factor * expected, h_max=np.sqrt(2)), rtol=1e-3, atol=1e-2
+    )
+    assert run(words) == 0
+    assert metric.complexity(mesh, made(mesh)) == pytest.approx(300, rel=2e-3)
+
+
+def test_indicators_of_the_cells_make_a_metric_and_a_field_its_shape(goal, capsys):
+    mesh, fields = goal
+    words = "metric goal.vtu --indicators eta --target-elements 700 -o m.sol"
+    assert run(f"{words} --json") == 0
+    assert json.loads(capsys.readouterr().out)["estimate"]["elements"] == pytest.approx(700, 0.01)
+    isotropic = np.linalg.eigvalsh(made(mesh))
+    assert (isotropic[:, 1] / isotropic[:, 0]).max() < 3  # the gradation alone
+    assert run(f"{words} --field u --implied") == 0
+    stretched = np.linalg.eigvalsh(made(mesh))
+    assert (stretched[:, 1] / stretched[:, 0]).max() > 10
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("--adjoint z --target-complexity 9", "--adjoint is given 1 times, --field 0 times"),
+        ("--field u --adjoint w --target-complexity 9", "no field 'w'; the fields are eta, u, z"),
+        ("--indicators u --target-complexity 9", "field 'u' lives on points, not on cells"),
+        ("--field u --adjoint z", "give target_complexity or target_elements, got neither"),
+        ("--field u --adjoint z --target-error 1", "a goal needs a complexity or elements"),
+    ],
+)
+def test_a_goal_that_does_not_fit_is_told_in_one_line(goal, capsys, words, message):
+    assert run("metric goal.vtu -o m.sol", *words.split()) == 2
+    said = capsys.readouterr().err
+    assert message in said
+    assert len(said.strip().splitlines()) == 1

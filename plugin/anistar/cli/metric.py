@@ -30,6 +30,7 @@ from ..metric.finishing import finishing_on
 from ..metric.options import TARGETS
 from . import console
 from .files import writable
+from .metric_goals import add_goal_arguments, goal_metrics, has_goals
 from .metric_sources import add_source_arguments, has_sources, sources
 from .options import adapt_options, add_metric_options, numbers
 
@@ -69,6 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "and time, and metric.sol becomes metric_000.sol and so on",
     )
     add_metric_options(parser)
+    add_goal_arguments(parser)
     add_source_arguments(parser)
     parser.add_argument(
         "--combine", choices=("intersect", "mean"), default="intersect", help="default intersect"
@@ -86,7 +88,9 @@ def run(arguments: argparse.Namespace) -> int:
         return _run_instants(arguments, output, options.metric, options.metric_fields)
     mesh, fields = read(arguments.input[0])
     has_target = any(getattr(options.metric, name) is not None for name in TARGETS)
-    if has_target or not has_sources(arguments):
+    if has_goals(arguments):
+        parts = goal_metrics(mesh, fields, arguments, options.metric)
+    elif has_target or not has_sources(arguments):
         names = metric_field_names(fields, options.metric_fields)
         chosen = {name: fields[name] for name in names}
         M, ledger = from_fields(mesh, chosen, options.metric)
@@ -143,7 +147,7 @@ def _run_instants(
     arguments: argparse.Namespace, output: Path, options: MetricOptions, names: Any
 ) -> int:
     """Make one metric for each input."""
-    if has_sources(arguments) or arguments.step is not None:
+    if has_sources(arguments) or has_goals(arguments) or arguments.step is not None:
         raise ValueError("several inputs are instants, whose metric comes from fields alone")
     read_all = [read(path) for path in arguments.input]
     meshes = [mesh for mesh, _ in read_all]
