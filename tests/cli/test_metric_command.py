@@ -121,6 +121,8 @@ def test_a_given_metric_is_repaired_only_when_asked(mesh, capsys, caplog):
         ("--size-in-box 0,1,0.1", "--size-in-box needs"),
         ("--size-at-tag 1", "--size-at-tag needs 2 numbers, got 1"),
         ("--size-at-tag 77,0.1", "no facet has tag 77"),
+        ("--field u --implied", "--field u needs a target, such as --target-complexity"),
+        ("--implied --max-elements 5", "max_elements is 5"),
         ("--implied --step 0.5", "ratio must be above 1, got 0.5"),
         ("--points-per-circle 9 --chord-error 1", "exactly one of points_per_circle"),
         ("--target-complexity 9 --scale mean", "scale must be a number or one of"),
@@ -201,7 +203,7 @@ def test_an_adjoint_state_makes_the_metric_of_an_output(goal):
 
 
 def test_indicators_of_the_cells_make_a_metric_and_a_field_its_shape(goal, capsys):
-    mesh, fields = goal
+    mesh, _ = goal
     words = "metric goal.vtu --indicators eta --target-elements 700 -o m.sol"
     assert run(f"{words} --json") == 0
     assert json.loads(capsys.readouterr().out)["estimate"]["elements"] == pytest.approx(700, 0.01)

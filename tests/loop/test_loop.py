@@ -185,6 +185,13 @@ class TestErrorsKeepTheStepsSoFar:
         ({"complexities": [100, np.nan]}, r"complexities\[1\] must be above 0, not nan"),
         ({"target_error": 0.0}, r"target_error must be above 0, not 0\.0"),
         ({"rtol": 0.1}, r"rtol = 0\.1 needs a qoi"),
+        (
+            {
+                "complexities": [1],
+                "adapt": AdaptOptions(metric=MetricOptions(target_error=0.5)),
+            },
+            r"target_error = 0\.5 is an option of one metric",
+        ),
         ({"complexities": [1], "max_iterations": 0}, "max_iterations must be at least 1, not 0"),
     ],
 )

@@ -8,6 +8,8 @@ from metric_meshes import box, is_at_least, random_metrics, stretched, tanh_laye
 
 from anistar import metric
 from anistar.metric import MetricOptions, from_fields
+from anistar.metric.finishing import finishing_on
+from anistar.metric.gradation import TOLERANCE, grade_on
 from anistar.metric.rootfind import MAX_EVALUATIONS, rescaling
 
 
@@ -240,6 +242,21 @@ def test_unknown_and_doubled_options_are_named():
 def test_options_out_of_range_are_refused_with_the_value(options, message):
     with pytest.raises(ValueError, match=message):
         MetricOptions(**options)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("a_max", [3.0, 10.0])
+def test_the_bound_of_anisotropy_and_the_gradation_both_hold_at_the_end(dim, a_max):
+    mesh = box(12 if dim == 2 else 6, dim, 0.2)
+    _, H = tanh_layer(mesh.points, 8.0)
+    M = metric.normalised(mesh, H, target_complexity=1000.0)
+    options = MetricOptions(target_complexity=1000.0, a_max=a_max, gradation_factor=1.5)
+    finishing = finishing_on(mesh, options)
+    finished = finishing.finished(M).metric
+    values = np.linalg.eigvalsh(finished)
+    assert np.sqrt(values[:, -1] / values[:, 0]).max() <= a_max * (1 + 1e-9)
+    again = grade_on(finishing.graph, mesh.points, finished, finishing.law).metric
+    np.testing.assert_allclose(again, finished, rtol=TOLERANCE, atol=TOLERANCE * values.max())
 
 
 def test_the_distortion_of_the_result_is_computed_once(monkeypatch):

@@ -112,7 +112,8 @@ def test_the_confidence_tells_patch_order_discrepancy_and_signal(dim):
     assert (scalar.condition > 1e-3).all()
     assert (scalar.condition <= 1.0).all()
     assert (scalar.level >= 0).all()
-    assert (scalar.discrepancy >= 0.0).all()
+    np.testing.assert_allclose(found["v"].discrepancy[:, 0], scalar.discrepancy, rtol=1e-6)
+    assert scalar.discrepancy.max() > 0.1  # the methods differ where cells are as large as it
     inside = np.minimum(mesh.points, 1 - mesh.points).min(axis=1) > 0.2
     assert np.median(scalar.discrepancy[inside]) < 0.4
     report = json.loads(json.dumps(scalar.as_dict()))

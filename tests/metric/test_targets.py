@@ -133,6 +133,27 @@ def test_one_instant_of_one_step_is_the_normalisation_in_space():
 
 
 @pytest.mark.parametrize("dim", [2, 3])
+def test_the_norm_ratio_grows_with_p_to_its_limit_and_does_not_underflow(dim):
+    ratios = [norm_ratio(p, dim) for p in (2.0, 10.0, 100.0, 1e4, 1e8)]
+    assert ratios[0] == pytest.approx(1.0)
+    assert np.all(np.diff(ratios) > 0.0)
+    assert ratios[-1] == pytest.approx(norm_ratio(np.inf, dim), rel=0.02)
+
+
+def test_a_space_time_complexity_out_of_reach_is_told(caplog):
+    mesh = small(2)
+    options = MetricOptions(target_complexity=1e4, h_min=0.2)
+    _, ledger = from_instants([mesh] * 2, [{"u": layer(mesh)}] * 2, options)
+    assert not ledger.reached
+    assert "target complexity 10000 is out of reach with these bounds" in ledger.message
+    assert ledger.message in caplog.text
+    near = from_instants(
+        [mesh] * 2, [{"u": layer(mesh)}] * 2, MetricOptions(target_complexity=300.0)
+    )[1]
+    assert near.message.startswith("complexity ")
+
+
+@pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("scale", ["complexity", "range"])
 def test_instants_meet_their_space_time_complexity_after_the_whole_pipeline(dim, scale):
     mesh, steps = small(dim), [10, 20]
