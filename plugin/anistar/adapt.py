@@ -213,15 +213,23 @@ def _to_count(
     geometry: Mesh | None,
     project: Project | None,
 ) -> tuple[Ledger, Remeshed, int]:
-    """Make the mesh, again where its number of elements is off, and count how often."""
-    wanted = options.metric
+    """Make the mesh, again where its number of elements is off, and count how often.
+
+    The number jumps on small meshes, so that the last mesh need not be the best.
+    """
+    wanted, best = options.metric, None
     for corrections in range(MAX_CORRECTIONS + 1):
         M, ledger = from_fields(mesh, fields, wanted)
         done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
+        miss = _miss(options.metric, done.mesh.n_cells)
+        if best is None or miss < best[0]:
+            best = miss, ledger, done
         corrected = _corrected(options.metric, wanted, ledger, done.mesh.n_cells)
         if corrected is None or not done.report.converged:  # a budget stopped it: so would the next
             return ledger, done, corrections
         wanted = corrected
+    assert best is not None  # the loop has run
+    _, ledger, done = best
     cap = options.metric.max_elements
     if cap is not None and done.mesh.n_cells > cap:
         raise MeshingError(
@@ -230,6 +238,13 @@ def _to_count(
             done.report,
         )
     return ledger, done, MAX_CORRECTIONS
+
+
+def _miss(asked: MetricOptions, elements: int) -> tuple[bool, float]:
+    """Return whether the cap is exceeded, and how far the number is off; less is better."""
+    over = asked.max_elements is not None and elements > asked.max_elements
+    wanted = asked.max_elements if over else asked.target_elements
+    return over, 0.0 if wanted is None else abs(elements / wanted - 1.0)
 
 
 def _corrected(
