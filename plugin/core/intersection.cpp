@@ -59,14 +59,6 @@ std::array<Vector<d>, d> facet_points(const Simplex<d> &s, std::size_t i) {
   return points;
 }
 
-/// d! times the volume, positive because the cell is.
-template <std::size_t d> double volume_determinant(const Simplex<d> &s) {
-  if constexpr (d == 2)
-    return cross(s[1] - s[0], s[2] - s[0]);
-  else
-    return (s[1] - s[0]).dot((s[2] - s[0]).cross(s[3] - s[0]));
-}
-
 template <std::size_t d> double determinant_of(const Piece<d> &piece) {
   std::array<std::array<double, d>, d> legs;
   for (std::size_t k = 0; k < d; ++k)

@@ -45,13 +45,6 @@ std::vector<Box<d>> facet_boxes(std::span<const Vector<d>> points,
   return boxes;
 }
 
-template <std::size_t d> double signed_volume(const Simplex<d> &s) {
-  if constexpr (d == 2)
-    return cross(s[1] - s[0], s[2] - s[0]);
-  else
-    return (s[1] - s[0]).dot((s[2] - s[0]).cross(s[3] - s[0]));
-}
-
 } // namespace
 
 template <std::size_t d>
@@ -124,7 +117,7 @@ Location<d> Locator<d>::inside(const Vector<d> &x, Index cell) const {
   for (std::size_t i = 0; i <= d; ++i) {
     Simplex<d> replaced = corners;
     replaced[i] = x;
-    at.barycentric[i] = std::max(0., signed_volume<d>(replaced));
+    at.barycentric[i] = std::max(0., volume_determinant<d>(replaced));
     sum += at.barycentric[i];
   }
   for (double &b : at.barycentric)

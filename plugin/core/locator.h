@@ -40,6 +40,7 @@ public:
     return neighbours_;
   }
   [[nodiscard]] const BoxTree<d> &cell_tree() const { return cell_tree_; }
+  [[nodiscard]] Simplex<d> simplex(Index cell) const;
 
 private:
   std::vector<Vector<d>> points_;
@@ -48,7 +49,6 @@ private:
   std::vector<HalfFacet> boundary_;
   BoxTree<d> cell_tree_, boundary_tree_;
 
-  [[nodiscard]] Simplex<d> simplex(Index cell) const;
   [[nodiscard]] Index walk(const Vector<d> &x, Index start) const;
   [[nodiscard]] Index containing(const Vector<d> &x) const;
   [[nodiscard]] Location<d> inside(const Vector<d> &x, Index cell) const;

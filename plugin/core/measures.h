@@ -122,10 +122,7 @@ template <std::size_t d>
 
 /// The signed area (2D) or volume (3D).
 template <std::size_t d> [[nodiscard]] inline double volume(const Simplex<d> &s) {
-  if constexpr (d == 2)
-    return cross(s[1] - s[0], s[2] - s[0]) / 2;
-  else
-    return (s[1] - s[0]).dot((s[2] - s[0]).cross(s[3] - s[0])) / 6;
+  return volume_determinant<d>(s) / (d == 2 ? 2 : 6);
 }
 
 /// The length of the shortest edge of a simplex in a metric.

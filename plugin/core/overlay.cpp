@@ -1,5 +1,7 @@
 #include "overlay.h"
 
+#include "measures.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -8,13 +10,6 @@ namespace {
 
 /// An overlap by less than this part of the smaller cell is round-off of the clipping.
 constexpr double overlap_round_off = 1e-13;
-
-template <std::size_t d> double volume_of(const Simplex<d> &s) {
-  if constexpr (d == 2)
-    return cross(s[1] - s[0], s[2] - s[0]) / 2;
-  else
-    return (s[1] - s[0]).dot((s[2] - s[0]).cross(s[3] - s[0])) / 6;
-}
 
 template <std::size_t d> Box<d> box_of(const Simplex<d> &s) {
   Box<d> box;
@@ -54,20 +49,12 @@ template <std::size_t d>
 Overlay<d>::Overlay(const Locator<d> &source)
     : source_(&source), seen_(source.cells().size(), none) {}
 
-template <std::size_t d> Simplex<d> Overlay<d>::simplex(Index cell) const {
-  Simplex<d> s;
-  const Cell<d> &corners = source_->cells()[static_cast<std::size_t>(cell)];
-  for (std::size_t i = 0; i <= d; ++i)
-    s[i] = source_->points()[static_cast<std::size_t>(corners[i])];
-  return s;
-}
-
 template <std::size_t d> const Cover<d> &Overlay<d>::cover(const Simplex<d> &target) {
   cover_.overlaps.clear();
   cover_.uncovered = cover_.distance = 0;
   cover_.filled = false;
   ++visit_;
-  const double volume = volume_of<d>(target);
+  const double volume = anistar::volume<d>(target);
   const Box<d> box = box_of<d>(target);
   advance(target, box, volume);
   if (total(gap(volume)) > coverage_round_off * volume)
@@ -105,7 +92,7 @@ bool Overlay<d>::try_cell(const Simplex<d> &target, const Box<d> &box, double vo
   if (seen == visit_)
     return false;
   seen = visit_;
-  const Simplex<d> source = simplex(cell);
+  const Simplex<d> source = source_->simplex(cell);
   if (!box.meets(box_of<d>(source)))
     return false;
   const Sides<d> at = sides<d>(target, source);
@@ -114,7 +101,8 @@ bool Overlay<d>::try_cell(const Simplex<d> &target, const Box<d> &box, double vo
       return false;
   Overlap<d> overlap{cell, intersection_moments<d>(at, volume), 0};
   overlap.volume = total(row_sums<d>(overlap.moments));
-  if (!(overlap.volume > overlap_round_off * std::min(volume, volume_of<d>(source))))
+  if (!(overlap.volume >
+        overlap_round_off * std::min(volume, anistar::volume<d>(source))))
     return false;
   cover_.overlaps.push_back(overlap);
   if (spread)

@@ -53,7 +53,6 @@ private:
   Index visit_ = 0;
   Index hint_ = none;
 
-  [[nodiscard]] Simplex<d> simplex(Index cell) const;
   void advance(const Simplex<d> &target, const Box<d> &box, double volume);
   bool try_cell(const Simplex<d> &target, const Box<d> &box, double volume, Index cell,
                 bool spread);

@@ -91,6 +91,15 @@ template <std::size_t d> [[nodiscard]] Orientation orientation(const Simplex<d> 
     return orientation(s[0], s[1], s[2], s[3]);
 }
 
+/// d! times the signed volume, rounded.
+template <std::size_t d>
+[[nodiscard]] inline double volume_determinant(const Simplex<d> &s) {
+  if constexpr (d == 2)
+    return cross(s[1] - s[0], s[2] - s[0]);
+  else
+    return (s[1] - s[0]).dot((s[2] - s[0]).cross(s[3] - s[0]));
+}
+
 /// Whether the volume of a simplex is positive and above the round-off of its edges,
 /// whatever the order of its vertices: a cell of less, positive as it may be exactly,
 /// is flat to everyone who computes with doubles.
@@ -100,11 +109,7 @@ template <std::size_t d> [[nodiscard]] inline bool has_volume(const Simplex<d> &
     for (std::size_t j = i + 1; j <= d; ++j)
       longest = std::max(longest, (s[j] - s[i]).squaredNorm());
   const double bound = detail::flatness * longest;
-  if constexpr (d == 2)
-    return cross(s[1] - s[0], s[2] - s[0]) > bound;
-  else
-    return (s[1] - s[0]).dot((s[2] - s[0]).cross(s[3] - s[0])) >
-           bound * std::sqrt(longest);
+  return volume_determinant<d>(s) > (d == 2 ? bound : bound * std::sqrt(longest));
 }
 
 /// A value with the sum of the magnitudes of its terms, to which its error is relative.

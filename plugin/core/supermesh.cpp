@@ -287,8 +287,7 @@ private:
         out.covered[static_cast<std::size_t>(chunk.sources[p])] += chunk.covered[p];
     }
     out.loads = std::move(loads_);
-    if (settings_.pairs)
-      gather_pairs(out);
+    gather_pairs(out);
     if (settings_.points)
       gather_points(out);
     return out;

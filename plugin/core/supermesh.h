@@ -27,7 +27,6 @@ struct SparseRows {
 
 struct SupermeshSettings {
   bool points = true; ///< assemble the matrix between the points
-  bool pairs = true;  ///< list the pairs of cells
   bool blocks = true; ///< keep the moments of every pair
   /// Values at the corners of the source's cells, one row of `n_columns` for each;
   /// their loads need no memory for the blocks.

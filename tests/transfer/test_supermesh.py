@@ -158,7 +158,6 @@ def test_a_region_that_the_core_cannot_find_is_named(region, message):
             other,
             np.zeros((0, 0)),
             points=True,
-            pairs=True,
             blocks=False,
             threads=1,
             callback=None,

@@ -147,7 +147,6 @@ def supermesh(
         regions.target,
         np.zeros((0, 0)) if nodal is None else np.ascontiguousarray(nodal),
         points=points,
-        pairs=True,
         blocks=blocks,
         threads=threads,
         callback=callback,

@@ -41,8 +41,8 @@ nb::dict
 supermesh_of(const Array2<double> &source_points, const Array2<Index> &source_cells,
              const Array1<Index> &source_regions, const Array2<double> &target_points,
              const Array2<Index> &target_cells, const Array1<Index> &target_regions,
-             const Array2<double> &nodal, bool points, bool pairs, bool blocks,
-             int threads, const nb::object &callback) {
+             const Array2<double> &nodal, bool points, bool blocks, int threads,
+             const nb::object &callback) {
   const std::size_t n_columns = nodal.shape(1);
   if (n_columns > 0 && nodal.shape(0) != source_cells.shape(0) * (d + 1))
     throw std::invalid_argument("nodal values are needed for every corner of a cell");
@@ -54,14 +54,13 @@ supermesh_of(const Array2<double> &source_points, const Array2<Index> &source_ce
   {
     nb::gil_scoped_release release;
     const SupermeshSettings settings{
-        points, pairs, blocks, {nodal.data(), nodal.size()}, n_columns, threads};
+        points, blocks, {nodal.data(), nodal.size()}, n_columns, threads};
     made = supermesh<d>(source, target, settings, monitor);
   }
   nb::dict out;
   if (points)
     put_rows(out, "points", std::move(made.points));
-  if (pairs)
-    put_rows(out, "pairs", std::move(made.pairs));
+  put_rows(out, "pairs", std::move(made.pairs));
   if (blocks) {
     const std::size_t n = made.blocks.size();
     auto *kept = new std::vector<Moments<d>>(std::move(made.blocks));
@@ -84,8 +83,8 @@ template <std::size_t d> void bind_dimension(nb::module_ &module, const char *na
              nb::arg("source_cells").noconvert(), nb::arg("source_regions").noconvert(),
              nb::arg("target_points").noconvert(), nb::arg("target_cells").noconvert(),
              nb::arg("target_regions").noconvert(), nb::arg("nodal").noconvert(),
-             nb::kw_only(), nb::arg("points"), nb::arg("pairs"), nb::arg("blocks"),
-             nb::arg("threads"), nb::arg("callback").none(),
+             nb::kw_only(), nb::arg("points"), nb::arg("blocks"), nb::arg("threads"),
+             nb::arg("callback").none(),
              "Lay two meshes over each other: matrices (starts, columns, values) "
              "between points and between cells, moments of the pairs, loads of nodal "
              "values, and coverage.");
