@@ -117,15 +117,7 @@ def _fitted(setting: Setting, *, with_gain: bool = False) -> Fits:
     """Quadratics around all points; ``quadratic`` takes badly conditioned patches, or raises."""
     is_auto = setting.options.method == "auto"
     pivots = (SMALLEST_PIVOT,) if is_auto else (SMALLEST_PIVOT, LAST_PIVOT)
-    fits = fit_patches(
-        setting.cut.points,
-        setting.cloud,
-        setting.graph.matrix(),
-        degree=2,
-        levels=setting.levels,
-        pivots=pivots,
-        with_gain=with_gain,
-    )
+    fits = _quadratics(setting, pivots, with_gain=with_gain)
     missing = np.unique(setting.cut.origin[fits.level < 0])
     if missing.size and not is_auto:
         raise ValueError(
@@ -134,6 +126,18 @@ def _fitted(setting: Setting, *, with_gain: bool = False) -> Fits:
             "method='auto'"
         )
     return fits
+
+
+def _quadratics(setting: Setting, pivots: tuple[float, ...], *, with_gain: bool = False) -> Fits:
+    return fit_patches(
+        setting.cut.points,
+        setting.cloud,
+        setting.graph.matrix(),
+        degree=2,
+        levels=setting.levels,
+        pivots=pivots,
+        with_gain=with_gain,
+    )
 
 
 def _fitted_hessian(setting: Setting, fits: Fits) -> Array:
@@ -152,14 +156,7 @@ def _point_values(setting: Setting) -> Array:
     """
     if setting.samples.space != "P0":
         return setting.samples.columns
-    fits = fit_patches(
-        setting.cut.points,
-        setting.cloud,
-        setting.graph.matrix(),
-        degree=2,
-        levels=setting.levels,
-        pivots=(SMALLEST_PIVOT, LAST_PIVOT),
-    )
+    fits = _quadratics(setting, (SMALLEST_PIVOT, LAST_PIVOT))
     values, missing = fits.value, fits.level < 0
     if missing.any():
         l2 = L2Projection(geometry=setting.geometry, is_consistent=False)

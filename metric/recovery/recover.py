@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -60,15 +60,7 @@ def recover_gradient(
     ValueError
         As `recover_hessian`.
     """
-    chosen = RecoveryOptions(method=method, **options)
-    fields, found = _fields(mesh, u, space), {}
-    for group, samples in grouped(fields):
-        setting = setting_of(mesh, samples, chosen)
-        gradient = recovered_gradient(setting)
-        joined = joined_gradients(setting.cut, gradient, setting.geometry.mass)
-        for name, part in group:
-            found[name] = joined[:, part][:, 0] if fields[name].is_scalar else joined[:, part]
-    return _as_given(u, found)
+    return _by_field(mesh, u, space, RecoveryOptions(method=method, **options), _joined_gradient)
 
 
 def recover_hessian(
@@ -119,16 +111,7 @@ def recover_hessian(
        recovery techniques, International Journal for Numerical Methods in Engineering 72,
        2007.
     """
-    chosen = RecoveryOptions(method=method, **options)
-    fields, found = _fields(mesh, u, space), {}
-    for group, samples in grouped(fields):
-        setting = setting_of(mesh, samples, chosen)
-        is_damped = method == "auto" or chosen.noise is not None
-        H = recovered_hessian(setting).damped if is_damped else hessian_as_found(setting)
-        joined = joined_hessians(setting.cut, H)
-        for name, part in group:
-            found[name] = joined[:, part][:, 0] if fields[name].is_scalar else joined[:, part]
-    return _as_given(u, found)
+    return _by_field(mesh, u, space, RecoveryOptions(method=method, **options), _joined_hessian)
 
 
 def recovery_confidence(
@@ -150,14 +133,7 @@ def recovery_confidence(
     ValueError
         As `recover_hessian`.
     """
-    chosen = RecoveryOptions(method=method, **options)
-    fields, found = _fields(mesh, u, space), {}
-    for group, samples in grouped(fields):
-        setting = setting_of(mesh, samples, chosen)
-        confidence = _confidence(setting)
-        for name, part in group:
-            found[name] = confidence.of_columns(0 if fields[name].is_scalar else part)
-    return _as_given(u, found)
+    return _by_field(mesh, u, space, RecoveryOptions(method=method, **options), _confidence)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -240,11 +216,40 @@ def _confidence(setting: Setting) -> RecoveryConfidence:
     )
 
 
-def _fields(mesh: MeshLike, u: Any, space: str | None) -> dict[str, Samples]:
-    if isinstance(u, Mapping):
-        return read_fields(mesh, u, space=space)
-    return {"u": read_samples(mesh, u, space=space)}
+def _joined_gradient(setting: Setting) -> Array:
+    return joined_gradients(setting.cut, recovered_gradient(setting), setting.geometry.mass)
 
 
-def _as_given(u: Any, found: dict[str, Any]) -> Any:
-    return {name: found[name] for name in u} if isinstance(u, Mapping) else found["u"]
+def _joined_hessian(setting: Setting) -> Array:
+    is_damped = setting.options.method == "auto" or setting.options.noise is not None
+    H = recovered_hessian(setting).damped if is_damped else hessian_as_found(setting)
+    return joined_hessians(setting.cut, H)
+
+
+def _by_field(
+    mesh: MeshLike,
+    u: Any,
+    space: str | None,
+    options: RecoveryOptions,
+    recover: Callable[[Setting], Array | RecoveryConfidence],
+) -> Any:
+    """Recover fields, those in one space together, and return them in the form of `u`."""
+    is_alone = not isinstance(u, Mapping)
+    fields = (
+        {"u": read_samples(mesh, u, space=space)} if is_alone else read_fields(mesh, u, space=space)
+    )
+    found = {}
+    for group, samples in grouped(fields):
+        recovered = recover(setting_of(mesh, samples, options))
+        for name, part in group:
+            # a scalar has no axis of components
+            found[name] = _columns(recovered, part.start if fields[name].is_scalar else part)
+    return found["u"] if is_alone else {name: found[name] for name in u}
+
+
+def _columns(
+    recovered: Array | RecoveryConfidence, columns: int | slice
+) -> Array | RecoveryConfidence:
+    if isinstance(recovered, RecoveryConfidence):
+        return recovered.of_columns(columns)
+    return recovered[:, columns]

@@ -121,6 +121,18 @@ def test_the_confidence_tells_patch_order_discrepancy_and_signal(dim):
     assert report["smallest_condition"] > 1e-3
 
 
+def test_the_confidence_of_each_of_several_scalars_is_its_own():
+    mesh = box(12, 2, 0.15)
+    u = tanh_layer(mesh.points, 3.0)[0] + noise_on(mesh.points, 1e-3)
+    v = mesh.points[:, 0] ** 2 + noise_on(mesh.points, 1e-2)
+    found = metric.recovery_confidence(mesh, {"u": u, "v": v})
+    for name, values in (("u", u), ("v", v)):
+        alone = metric.recovery_confidence(mesh, values)
+        assert float(found[name].noise) == pytest.approx(float(alone.noise))
+    assert float(found["v"].noise) > 5 * float(found["u"].noise)
+    assert not np.allclose(found["v"].signal, found["u"].signal)
+
+
 def test_the_confidence_marks_points_without_a_quadratic():
     mesh = box(1, 2)
     u = mesh.points[:, 0] ** 2
