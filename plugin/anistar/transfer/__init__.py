@@ -8,7 +8,7 @@ from .operators import transfer_operator
 from .options import METHODS, OUTSIDE, Outside, TransferOptions
 from .quadrature import transfer_quadrature
 from .report import Coverage, FieldChange, TransferReport
-from .transfer import Transferred, as_given, transfer
+from .transfer import Transferred, transfer
 
 __all__ = [
     "METHODS",
@@ -20,7 +20,6 @@ __all__ = [
     "TransferOptions",
     "TransferReport",
     "Transferred",
-    "as_given",
     "integral",
     "locator",
     "node_positions",

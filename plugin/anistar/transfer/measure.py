@@ -6,9 +6,8 @@ import numpy as np
 
 from ..fields import Field
 from ..mesh import Mesh
-from ..topology import Float, Int, cell_volumes
+from ..topology import Float, cell_volumes
 from .nodes import node_weights
-from .regions import sums_by_region
 
 
 def cell_integrals(mesh: Mesh, field: Field) -> Float:
@@ -39,8 +38,3 @@ def integral(mesh: Mesh, field: Field) -> Float:
     (), (d,) or (d, d) float64
     """
     return np.asarray(cell_integrals(mesh, field).sum(axis=0))
-
-
-def integral_by_region(mesh: Mesh, field: Field, regions: Int, count: int) -> Float:
-    """Return the (count, ...) integrals of a field over each region."""
-    return sums_by_region(cell_integrals(mesh, field), regions, count)

@@ -14,6 +14,7 @@ from scipy.sparse import csr_array
 from ..fields import Field, as_fields
 from ..mesh import Mesh
 from ..options import require
+from ..topology import Float
 from .bounded import bounded
 from .columns import from_columns
 from .coverage import require_covered
@@ -21,10 +22,10 @@ from .difference import l2_difference
 from .interpolation import Interpolator
 from .labels import majority
 from .loading import Overlapped, overlapped
-from .measure import integral, integral_by_region
+from .measure import cell_integrals
 from .options import Outside, TransferOptions
 from .projection import Loaded, Projector
-from .regions import Regions, common_regions, warn_of_unmatched
+from .regions import Regions, common_regions, sums_by_region, warn_of_unmatched
 from .report import FieldChange, TransferReport
 
 
@@ -126,10 +127,10 @@ def transfer(
         },
         seconds=time.perf_counter() - started,
     )
-    return Transferred(as_given(fields, done.fields), report)
+    return Transferred(_as_given(fields, done.fields), report)
 
 
-def as_given(fields: Mapping[str, Any], carried: Mapping[str, Field]) -> dict[str, Any]:
+def _as_given(fields: Mapping[str, Any], carried: Mapping[str, Field]) -> dict[str, Any]:
     """Return the carried fields in the form of the given ones: `Field`, or a bare array."""
     return {
         name: field if isinstance(fields[name], Field) else field.values
@@ -203,13 +204,13 @@ def _change(
     regions: Regions,
     difference: list[float] | None,
 ) -> FieldChange:
-    pairs = ((source, before), (target, after))
+    held, kept = cell_integrals(source, before), cell_integrals(target, after)
     axes = (0, 1) if before.on == "cell_nodes" else (0,)
     return FieldChange(
-        integral=_pair(*(integral(mesh, field) for mesh, field in pairs)),
-        minimum=_pair(*(field.values.min(axis=axes) for _, field in pairs)),
-        maximum=_pair(*(field.values.max(axis=axes) for _, field in pairs)),
-        defects=_defects(source, before, target, after, regions),
+        integral=_pair(*(part.sum(axis=0) for part in (held, kept))),
+        minimum=_pair(*(field.values.min(axis=axes) for field in (before, after))),
+        maximum=_pair(*(field.values.max(axis=axes) for field in (before, after))),
+        defects=_defects(held, kept, regions),
         l2_difference=difference,
     )
 
@@ -224,12 +225,10 @@ def _pair(before: Any, after: Any) -> tuple[list[float], list[float]]:
     return np.ravel(before).tolist(), np.ravel(after).tolist()
 
 
-def _defects(
-    source: Mesh, before: Field, target: Mesh, after: Field, regions: Regions
-) -> dict[int, list[float]]:
+def _defects(held: Float, kept: Float, regions: Regions) -> dict[int, list[float]]:
+    """Return what each region has more than before, from the integrals over the cells."""
     if not regions.tags:
         return {}
-    held = integral_by_region(source, before, regions.source, regions.count)
-    kept = integral_by_region(target, after, regions.target, regions.count)
-    lost = (kept - held).reshape(regions.count, -1)
+    lost = sums_by_region(kept, regions.target, regions.count)
+    lost = (lost - sums_by_region(held, regions.source, regions.count)).reshape(regions.count, -1)
     return {tag: row.tolist() for tag, row in zip(regions.tags, lost, strict=True)}
