@@ -96,6 +96,33 @@ def vec_at(address: int) -> Any:
     return _from_c("PyPetscVec_New", address)
 
 
+def label_at(address: int) -> Any:
+    """Return the petsc4py object of a DMLabel that C has handed over."""
+    return _from_c("PyPetscDMLabel_New", address)
+
+
+def add_label(plex: Any, label: Any) -> None:
+    """Give a DM a label that exists already, as DMAddLabel does in C."""
+    function = library().DMAddLabel
+    function.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+    _checked(function(plex.handle, label.handle))
+
+
+def processes(plex: Any) -> Any:
+    """Return the communicator of a DM for messages of Python objects.
+
+    Raises
+    ------
+    ImportError
+        If mpi4py is missing, which only a DM on several processes needs.
+    """
+    try:
+        return plex.comm.tompi4py()
+    except ImportError as error:
+        error.add_note("a DM on several processes needs mpi4py: pip install mpi4py")
+        raise
+
+
 def start_error(plex: Any, message: str) -> int:
     """Start a PETSc error with this message, and return the code for the caller to pass on."""
     communicator = library().PetscObjectComm
