@@ -15,9 +15,7 @@ dolfinx_wheel.make_importable()
 try:
     from petsc4py import PETSc as PETSc
 except ImportError as error:
-    error.add_note(
-        "anistar's PETSc adapter needs petsc4py: pip install 'anistar[dolfinx]' or 'anistar[petsc]'"
-    )
+    error.add_note(dolfinx_wheel.PETSC_IS_MISSING)
     raise
 
 #: Signature of a metric adaptor, `DMGenerateFunctions.adaptmetric`: the DM, the metric, labels of
