@@ -59,6 +59,8 @@ def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) ->
     Returns
     -------
     vtkUnstructuredGrid
+        Scalar fields at points and, in 3D, the points and all fields there are the arrays given,
+        not copies.
     """
     content = exported(mesh, as_fields(mesh, fields))
     grid = vtkUnstructuredGrid()
@@ -99,7 +101,8 @@ def from_vtk(grid: Any) -> tuple[Mesh, dict[str, Field]]:
     -------
     mesh : Mesh
     fields : dict of str to Field
-        Symmetric tensors of six components are taken in VTK's order.
+        Symmetric tensors of six components are taken in VTK's order. Where every point has a cell
+        and no component has to go, the values are those of the grid, not copies.
 
     Raises
     ------
