@@ -77,6 +77,16 @@ def test_a_loop_that_is_killed_in_a_solve_resumes_to_the_same_bytes(folder):
     assert anistar.validate(anistar.read("killed/series_002.vtu")[0], square(6)) == []
 
 
+def test_a_new_loop_in_an_old_folder_does_not_go_on_with_the_old_steps(folder, monkeypatch):
+    assert main(arguments("run")) == 0
+    monkeypatch.setattr("anistar.run_folder.write", None)  # nothing can be saved any more
+    assert main(arguments("run")) == 1
+    monkeypatch.undo()
+    monkeypatch.chdir(folder)
+    report = json.loads(Path("run/report.json").read_text())
+    assert report["steps"] == []
+
+
 def test_what_the_solver_printed_is_kept_for_each_iteration(folder):
     assert main(arguments("run")) == 0
     logs = sorted(Path("run").glob("*.log"))
