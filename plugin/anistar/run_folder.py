@@ -71,8 +71,8 @@ class RunFolder:
         self._report(Loop(tuple(self.steps), RUNNING))
 
     def close(self, loop: Loop) -> None:
-        """Record why the loop stopped."""
-        self._report(loop)
+        """Record why the loop stopped; a step that could not be saved is not one of it."""
+        self._report(Loop(tuple(self.steps), loop.stop_reason))
 
     def load(self) -> list[Step]:
         """Return the finished steps of an earlier run in this folder, none if there was none.

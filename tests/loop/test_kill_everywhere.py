@@ -11,8 +11,7 @@ import pytest
 @pytest.mark.parametrize(
     ("kind", "dim", "every"),
     [
-        ("mesh", 2, 4),
-        ("meshb", 2, 19),
+        ("mesh", 2, 8),
         ("vtu", 2, 19),
         ("msh", 2, 19),
         ("su2", 2, 19),
