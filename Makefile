@@ -48,7 +48,7 @@ docs: ## Build the documentation into docs/_build/html
 	@echo "docs/_build/html/index.html"
 
 # The shared libraries that the core needs go into the wheel. It is tried where there is nothing
-# but Python: an environment of its own, and no compiler on the path.
+# but Python: an environment of its own, no compiler on the path and no variable set.
 wheel: ## Build a wheel that needs no compiler into dist/, and try it
 	@./bootstrap.sh wheel
 	@rm -rf build/wheel dist && mkdir -p dist
@@ -57,7 +57,7 @@ wheel: ## Build a wheel that needs no compiler into dist/, and try it
 	@PATH="$(CURDIR)/.venv/bin:$$PATH" $(PYTHON) -m auditwheel repair --wheel-dir dist build/wheel/*.whl
 	@$(PYTHON) -m venv build/wheel/venv
 	@build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
-	@cd build/wheel && PATH=/nowhere venv/bin/anistar doctor
+	@cd build/wheel && env -i PATH=/nowhere venv/bin/anistar doctor
 	@ls dist/*.whl
 
 # The sanitized build goes beside the ordinary one. Python itself is not instrumented: the

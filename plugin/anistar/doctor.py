@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import importlib
 import importlib.metadata
+import itertools
 import platform
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,6 +34,11 @@ OPTIONAL = {
     "mfem": "mfem",
     "mmgpy": "bench",
 }
+
+_EVEN = {(0, 1, 2), (1, 2, 0), (2, 0, 1)}
+
+#: Those with an adapter of their own.
+ADAPTERS = ("skfem", "vtk", "petsc4py", "dolfinx", "ngsolve", "mfem")
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +82,8 @@ class Diagnosis:
 def diagnose() -> Diagnosis:
     """Look at everything that anistar needs; nothing is raised."""
     python = Finding("python", "ok", f"{platform.python_version()} on {platform.platform()}")
-    findings = [python, *map(_required, REQUIRED), _tried("adaptation", _small_adaptation)]
+    findings = [python, *map(_required, REQUIRED)]
+    findings += [_tried(f"adaptation in {dim}D", partial(_small_adaptation, dim)) for dim in (2, 3)]
     dolfinx_wheel.make_importable()
     findings += [_optional(name, extra) for name, extra in OPTIONAL.items()]
     return Diagnosis(tuple(findings))
@@ -96,7 +104,24 @@ def _optional(name: str, extra: str) -> Finding:
         return Finding(name, "absent", f"optional: pip install 'anistar[{extra}]'")
     except Exception as error:  # a package of another build can fail in any way while it loads
         return Finding(name, "broken", f"{type(error).__name__}: {error}")
-    return Finding(name, "ok", str(getattr(module, "__version__", "version not known")))
+    version = str(getattr(module, "__version__", "version not known"))
+    if name not in ADAPTERS:
+        return Finding(name, "ok", version)
+    return _tried(name, lambda: f"{version}; {_round_trip(name.removesuffix('4py'))}")
+
+
+def _round_trip(adapter: str) -> str:
+    """Hand a mesh to another package and take it back."""
+    module = importlib.import_module(f"{__package__}.adapters.{adapter}")
+    kind = {"petsc": "dmplex"}.get(adapter, adapter)
+    mesh = _block(3)
+    made = getattr(module, f"to_{kind}")(mesh)
+    # A dolfinx mesh comes with its tags beside it; other adapters return the mesh with more.
+    found = getattr(module, f"from_{kind}")(getattr(made, "domain", made))
+    again = found[0] if isinstance(found, tuple) else found
+    if not np.array_equal(again.points, mesh.points):
+        raise RuntimeError("a mesh that goes there and back has other points")
+    return "meshes go there and back"
 
 
 def _tried(name: str, attempt: Callable[[], str]) -> Finding:
@@ -106,12 +131,24 @@ def _tried(name: str, attempt: Callable[[], str]) -> Finding:
         return Finding(name, "broken", f"{type(error).__name__}: {error}")
 
 
-def _small_adaptation() -> str:
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]])
-    cells = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-    square = Mesh(points=corners, cells=cells)
+def _small_adaptation(dim: int) -> str:
+    block = _block(dim)
     options = AdaptOptions(metric=MetricOptions(target_complexity=100.0))
-    done = adapt(square, {"u": (corners**2).sum(axis=1)}, options)
+    done = adapt(block, {"u": (block.points**2).sum(axis=1)}, options)
     if problems := validate(done.mesh):
         raise RuntimeError(problems[0].message)
     return f"{done.mesh.n_points} points in {done.report.seconds:.3f} s"
+
+
+def _block(dim: int) -> Mesh:
+    """Return the unit square of four triangles, or the unit cube of six tetrahedra."""
+    if dim == 2:
+        points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]])
+        return Mesh(points=points, cells=np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]))
+    points = np.array([*itertools.product((0.0, 1.0), repeat=3)])
+    cells = []
+    for axes in itertools.permutations(range(3)):  # Kuhn's six tetrahedra along the diagonal
+        steps = np.cumsum(np.eye(3, dtype=int)[list(axes)], axis=0) @ [4, 2, 1]
+        corners = [0, *steps.tolist()]
+        cells.append(corners if axes in _EVEN else [*corners[:2], corners[3], corners[2]])
+    return Mesh(points=points, cells=np.array(cells))

@@ -3,6 +3,10 @@
 import contextlib
 import importlib
 
+PETSC_IS_MISSING = (
+    "anistar's PETSc adapter needs petsc4py: pip install 'anistar[dolfinx]' or 'anistar[petsc]'"
+)
+
 
 def make_importable() -> None:
     """Let dolfinx and petsc4py be found where the wheel `dolfinx-solver-real` is installed.

@@ -10,6 +10,7 @@ from typing import Any
 
 from .errors import FormatError
 from .formats import read, write
+from .formats.atomic import remove_leftovers
 from .loop import Loop, Step
 from .report import as_builtin, write_json
 from .series import member, write_index
@@ -56,6 +57,11 @@ class RunFolder:
         self.settings = as_builtin(settings)
         self.steps: list[Step] = []
 
+    def begin(self) -> None:
+        """Forget an earlier run in this folder: none of its steps is one of this run."""
+        (self.folder / REPORT).unlink(missing_ok=True)
+        remove_leftovers(self.folder)
+
     def save(self, step: Step) -> None:
         """Add a finished step."""
         number = len(self.steps)
@@ -65,8 +71,8 @@ class RunFolder:
         self._report(Loop(tuple(self.steps), RUNNING))
 
     def close(self, loop: Loop) -> None:
-        """Record why the loop stopped."""
-        self._report(loop)
+        """Record why the loop stopped; a step that could not be saved is not one of it."""
+        self._report(Loop(tuple(self.steps), loop.stop_reason))
 
     def load(self) -> list[Step]:
         """Return the finished steps of an earlier run in this folder, none if there was none.
@@ -79,6 +85,7 @@ class RunFolder:
             If its files are damaged.
         """
         path = self.folder / REPORT
+        remove_leftovers(self.folder)
         if not path.is_file():
             return []
         try:

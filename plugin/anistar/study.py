@@ -16,7 +16,7 @@ from .interpolation_error import ExactFunction, l2_error
 from .loop import LoopOptions, Solve, Step, adapt_loop
 from .mesh import Mesh
 from .remesh import remesh
-from .report import as_builtin, attributes, write_text
+from .report import as_builtin, attributes, write_json, write_text
 from .topology import cell_volumes
 
 BASELINES = ("uniform", "isotropic")
@@ -95,6 +95,25 @@ class Study:
                 size = f"{row.complexity!r},{row.points},{row.cells}"
                 lines.append(f"{kind},{size},{row.error!r},{order}")
         write_text(path, "\n".join([*lines, ""]))
+
+    def write_json(self, path: str | os.PathLike[str]) -> None:
+        """Write what `as_dict` returns."""
+        write_json(path, self)
+
+    def write_picture(self, path: str | os.PathLike[str], *, label: str = "$L^2$ error") -> None:
+        """Draw the error against the points of all kinds of mesh; needs matplotlib.
+
+        Parameters
+        ----------
+        path : path
+            A PNG, SVG or PDF file.
+        label : str
+            What the error is.
+        """
+        from .pictures import convergence_picture  # matplotlib is optional
+
+        best = 2 / self.steps[0].mesh.dim
+        convergence_picture(path, self.curves(), order=best, label=label)
 
 
 def convergence_study(

@@ -64,6 +64,30 @@ def test_a_grid_from_a_file_of_ours_is_the_same(make, tmp_path):
     assert_same_fields(fields_of(mesh), found)
 
 
+@pytest.mark.parametrize("make", [two_regions, two_region_cube])
+def test_arrays_are_shared_where_vtk_has_the_same_layout(make):
+    mesh = make()
+    fields = {name: fields_of(mesh)[name] for name in "uvm"}
+    grid = vtk.to_vtk(mesh, fields)
+    data = grid.GetPointData()
+    inside = {name: vtk_to_numpy(data.GetArray(name)) for name in fields}
+    _, found = vtk.from_vtk(grid)
+    shared = {name: np.shares_memory(inside[name], fields[name]) for name in fields}
+    back = {name: np.shares_memory(inside[name], found[name].values) for name in fields}
+    # In the plane VTK has a third component.
+    in_space = mesh.dim == 3
+    assert shared == back == {"u": True, "v": in_space, "m": in_space}
+    points = vtk_to_numpy(grid.GetPoints().GetData())
+    assert np.shares_memory(points, mesh.points) == in_space
+
+
+def test_values_outlive_the_grid_that_they_are_shared_with():
+    mesh = cube(8)
+    _, found = vtk.from_vtk(vtk.to_vtk(mesh, {"u": np.arange(float(mesh.n_points))}))
+    _ = [np.zeros(mesh.n_points) for _ in range(50)]
+    assert np.array_equal(found["u"].values, np.arange(float(mesh.n_points)))
+
+
 def test_anistar_reads_what_vtk_writes(tmp_path):
     mesh = two_regions()
     writer = vtkXMLUnstructuredGridWriter()
@@ -162,8 +186,9 @@ def passing(*_, **__):
     return lambda decorated: decorated
 
 
-def test_the_paraview_plugin_offers_both_filters(monkeypatch):
-    """ParaView's decorators only describe; here they do nothing."""
+@pytest.fixture
+def paraview(monkeypatch):
+    """The modules of ParaView that the plugin imports; their decorators only describe."""
     names = ("smproxy", "smproperty", "smdomain", "smhint")
     module = types.ModuleType("paraview.util.vtkAlgorithm")
     kinds = ("filter", "input", "datatype", "xml", "doublevector", "stringvector")
@@ -172,21 +197,76 @@ def test_the_paraview_plugin_offers_both_filters(monkeypatch):
     for name in ("paraview", "paraview.util"):
         monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
     monkeypatch.setitem(sys.modules, "paraview.util.vtkAlgorithm", module)
+    return sys.modules["paraview"]
+
+
+@pytest.mark.usefixtures("paraview")
+@pytest.mark.parametrize("make", [square, cube])
+def test_the_paraview_plugin_offers_both_filters_with_properties(make):
     plugin = runpy.run_path(str(PLUGIN))
-    mesh = square(10)
-    adapt = plugin["AnistarAdapt"]()
-    adapt.SetInputDataObject(vtk.to_vtk(mesh, front(mesh)))
-    adapt.SetTargetComplexity(200.0)
-    adapt.SetLargestSize(0.2)
-    adapt.SetSmallestSize(0.0)
-    adapt.SetLargestAnisotropy(10.0)
-    adapt.SetGradationFactor(1.5)
-    adapt.SetNorm(2.0)
-    adapt.SetPointArrays("u")
-    adapt.Update()
-    new, _ = vtk.from_vtk(adapt.GetOutputDataObject(0))
+    mesh = make(5)
+    for name in ("AnistarAdapt", "AnistarMetric"):
+        filter_ = plugin[name]()
+        filter_.SetInputDataObject(vtk.to_vtk(mesh, front(mesh)))
+        filter_.SetTargetComplexity(200.0)
+        filter_.SetLargestSize(0.4)
+        filter_.SetSmallestSize(0.0)
+        filter_.SetLargestAnisotropy(10.0)
+        filter_.SetGradationFactor(1.5)
+        filter_.SetNorm(2.0)
+        filter_.SetPointArrays("u")
+        filter_.Update()
+        new, found = vtk.from_vtk(filter_.GetOutputDataObject(0))
+        assert anistar.validate(new) == []
+        assert (new.n_points != mesh.n_points) == (name == "AnistarAdapt")
+        assert ("metric" in found) == (name == "AnistarMetric")
+
+
+class FilterOfParaView:
+    """What `paraview.simple` makes of a filter: properties by their names in the plugin."""
+
+    def __init__(self, made, Input):
+        self.__dict__["filter"] = made
+        made.SetInputDataObject(Input)
+
+    def __setattr__(self, name, value):
+        getattr(self.filter, f"Set{name}")(value)
+
+
+def test_the_script_for_paraview_adapts_a_file(paraview, monkeypatch, tmp_path):
+    """In VTK's pipeline, through the few calls that the script makes."""
+    simple = types.ModuleType("paraview.simple")
+
+    def load(path, remote, ns):
+        plugin = runpy.run_path(path)
+        simple.AnistarAdapt = lambda Input: FilterOfParaView(plugin["AnistarAdapt"](), Input)
+
+    def opened(path):
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(path)
+        reader.Update()
+        return reader.GetOutput()
+
+    def save(path, adapted):
+        adapted.filter.Update()
+        writer = vtkXMLUnstructuredGridWriter()
+        writer.SetFileName(path)
+        writer.SetInputData(adapted.filter.GetOutputDataObject(0))
+        writer.Write()
+
+    simple.LoadPlugin, simple.OpenDataFile, simple.SaveData = load, opened, save
+    paraview.simple = simple
+    monkeypatch.setitem(sys.modules, "paraview.simple", simple)
+    mesh = two_regions(10)
+    anistar.write(tmp_path / "flow.vtu", mesh, front(mesh))
+    words = [str(tmp_path / "flow.vtu"), str(tmp_path / "adapted.vtu"), "300", "u"]
+    monkeypatch.setattr(sys, "argv", ["paraview_run.py", *words])
+    runpy.run_path(str(PLUGIN.with_name("paraview_run.py")), run_name="__main__")
+    new, found = anistar.read(tmp_path / "adapted.vtu")
     assert anistar.validate(new) == []
-    assert new.n_points != mesh.n_points
+    assert new.names == mesh.names
+    assert 200 < new.n_points < 600
+    assert set(found) == {"u", "other"}
 
 
 @pytest.mark.parametrize("make", [square, cube])

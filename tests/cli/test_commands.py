@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from meshes import square
+from meshes import cube, square
 
 import anistar
 from anistar.cli import main
 from anistar.cli.main import COMMANDS
+from anistar.doctor import ADAPTERS
 from anistar.fields import Field
 from anistar.formats import read, read_metric, write, write_metric
 from anistar.mesh import Mesh
@@ -194,6 +195,22 @@ def test_study_compares_with_other_meshes_in_a_table_a_file_and_a_picture(folder
     assert Path("s.png").stat().st_size > 10_000
 
 
+def test_study_takes_a_solver_that_is_a_command_and_three_dimensions(folder, capsys):
+    write("cube.vtu", cube(3))
+    Path("solver.py").write_text(
+        "import sys, numpy, anistar\n"
+        "mesh, _ = anistar.read(sys.argv[1])\n"
+        "u = numpy.tanh(5 * (mesh.points.sum(axis=1) - 1.5))\n"
+        "anistar.write(sys.argv[2], mesh, {'u': u})\n"
+    )
+    words = "study cube.vtu --complexities 100,200 --repeats 1 --h-min 0.05 --json --csv s.csv"
+    solver = f"{sys.executable} solver.py {{mesh}} {{solution}}"
+    assert run(words, "--exact", "tanh(5*(x+y+z-1.5))", "--command", solver) == 0
+    report = report_of(capsys)
+    assert report["table"][1]["error"] < report["table"][0]["error"]
+    assert len(Path("s.csv").read_text().splitlines()) == 3
+
+
 def test_study_prints_the_order_of_an_exact_solution(folder, capsys):
     exact = "tanh(20 * (x**2 + y**2 - 0.5))"
     words = "study in.vtu --complexities 400,1600 --json"
@@ -232,7 +249,22 @@ def test_convert_changes_the_format_and_keeps_the_fields(folder):
 def test_doctor_finds_this_installation_sound(capsys):
     assert main(["doctor", "--json"]) == 0
     findings = {item["name"]: item for item in report_of(capsys)["findings"]}
-    assert findings["adaptation"]["state"] == "ok"
+    assert findings["adaptation in 2D"]["state"] == findings["adaptation in 3D"]["state"] == "ok"
+    for package in ADAPTERS:
+        assert findings[package]["state"] in ("ok", "absent")
+        if findings[package]["state"] == "ok":
+            assert "meshes go there and back" in findings[package]["detail"]
+        else:
+            assert "pip install 'anistar[" in findings[package]["detail"]
+
+
+def test_doctor_tells_of_an_adapter_that_does_not_work(monkeypatch, capsys):
+    pytest.importorskip("skfem")
+    monkeypatch.setattr("anistar.adapters.skfem.from_skfem", lambda other: square(1))
+    assert main(["doctor", "--json"]) == 1
+    findings = {item["name"]: item for item in report_of(capsys)["findings"]}
+    assert findings["skfem"]["state"] == "broken"
+    assert "other points" in findings["skfem"]["detail"]
 
 
 def test_the_command_line_needs_no_optional_package():

@@ -77,6 +77,23 @@ def test_a_loop_that_is_killed_in_a_solve_resumes_to_the_same_bytes(folder):
     assert anistar.validate(anistar.read("killed/series_002.vtu")[0], square(6)) == []
 
 
+def test_a_step_that_cannot_be_saved_is_not_in_the_report_nor_is_an_older_one(folder, monkeypatch):
+    assert main(arguments("run")) == 0
+    whole = contents("run")
+
+    def full(path, mesh, fields):
+        raise FormatError(f"cannot write {path}: No space left on device")
+
+    with monkeypatch.context() as disk:
+        disk.setattr("anistar.run_folder.write", full)
+        assert main(arguments("run")) == 2
+    report = json.loads(Path("run/report.json").read_text())
+    assert report["steps"] == []
+    assert "No space left" in report["stop_reason"]
+    assert main(arguments("run", "--resume")) == 0
+    assert contents("run") == whole
+
+
 def test_what_the_solver_printed_is_kept_for_each_iteration(folder):
     assert main(arguments("run")) == 0
     logs = sorted(Path("run").glob("*.log"))

@@ -1,6 +1,8 @@
+import json
+
 import numpy as np
 import pytest
-from meshes import square
+from meshes import cube, square
 
 from anistar.study import convergence_study, observed_order
 from anistar.validation import validate
@@ -52,6 +54,37 @@ def test_adapted_meshes_beat_isotropic_ones_and_these_beat_uniform_ones(tmp_path
     ] * 2
     assert float(lines[-1].split(",")[4]) == adapted.error
     assert list(study.curves()) == ["uniform", "isotropic", "adapted"]
+
+
+def test_a_study_in_three_dimensions_is_written_as_table_report_and_picture(tmp_path):
+    pytest.importorskip("matplotlib")
+
+    def shell(points):
+        return np.tanh(6 * ((points**2).sum(axis=-1) - 0.7))
+
+    def solve(mesh, fields):
+        return {"u": shell(mesh.points)}
+
+    study = convergence_study(
+        solve, cube(4), [300, 1200], exact=shell, baselines=["uniform", "isotropic"]
+    )
+    assert study.order == pytest.approx(2.4, abs=0.5)
+    for step in study.steps:
+        assert validate(step.mesh) == []
+    uniform, isotropic = (study.baselines[kind][-1] for kind in ("uniform", "isotropic"))
+    assert uniform.error > isotropic.error > 2 * study.table[-1].error
+    counts, errors = ([getattr(row, name) for row in study.table] for name in ("points", "error"))
+    assert study.order == pytest.approx(
+        3 * np.log(errors[0] / errors[1]) / np.log(counts[1] / counts[0])
+    )
+    study.write_csv(tmp_path / "study.csv")
+    study.write_json(tmp_path / "study.json")
+    study.write_picture(tmp_path / "study.png")
+    assert len((tmp_path / "study.csv").read_text().splitlines()) == 7
+    report = json.loads((tmp_path / "study.json").read_text())
+    assert report["order"] == study.order
+    assert report["baselines"]["uniform"][1]["error"] == uniform.error
+    assert (tmp_path / "study.png").stat().st_size > 10_000
 
 
 def test_the_observed_order_is_that_of_a_power_law():

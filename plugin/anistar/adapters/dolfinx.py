@@ -5,6 +5,7 @@ dolfinx renumbers points and cells; everything here goes through its maps back t
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,6 +38,10 @@ class DolfinxMesh:
     domain : dolfinx.mesh.Mesh
     cell_tags, facet_tags : dolfinx.mesh.MeshTags
         Of all cells, and of all facets of the mesh.
+    edge_tags : dolfinx.mesh.MeshTags or None
+        Of the ridges of a 3D mesh; None in 2D.
+    vertex_tags : dolfinx.mesh.MeshTags
+        1 at corners.
     names : dict of (dim, tag) to str
         As in the mesh.
     """
@@ -44,6 +49,8 @@ class DolfinxMesh:
     domain: Any
     cell_tags: Any
     facet_tags: Any
+    edge_tags: Any
+    vertex_tags: Any
     names: dict[tuple[int, int], str]
 
     def tag(self, name: str) -> int:
@@ -61,7 +68,7 @@ class DolfinxMesh:
 
 
 def to_dolfinx(mesh: Mesh) -> DolfinxMesh:
-    """Return a mesh as a dolfinx mesh on ``MPI.COMM_SELF``, with cell and facet tags."""
+    """Return a mesh as a dolfinx mesh on ``MPI.COMM_SELF``, with tags on all strata."""
     kind = {2: "triangle", 3: "tetrahedron"}[mesh.dim]
     element = basix.ufl.element("Lagrange", kind, 1, shape=(mesh.dim,))
     domain = dolfinx.mesh.create_mesh(
@@ -69,20 +76,28 @@ def to_dolfinx(mesh: Mesh) -> DolfinxMesh:
     )
     cells = np.arange(mesh.n_cells, dtype=np.int32)
     original = np.asarray(domain.topology.original_cell_index)
-    facets = _facets(domain)
-    encoder = RowKeys(facets, mesh.n_points)
-    keys, wanted = encoder.encode(facets), encoder.encode(mesh.facets)
-    order = np.argsort(keys)
-    rows = order[np.searchsorted(keys[order], wanted)]
-    ascending = np.argsort(rows)
     return DolfinxMesh(
         domain=domain,
         cell_tags=dolfinx.mesh.meshtags(domain, mesh.dim, cells, mesh.cell_tags[original]),
-        facet_tags=dolfinx.mesh.meshtags(
-            domain, mesh.dim - 1, rows[ascending].astype(np.int32), mesh.facet_tags[ascending]
+        facet_tags=_mesh_tags(domain, mesh.facets, mesh.facet_tags),
+        edge_tags=_mesh_tags(domain, mesh.edges, mesh.edge_tags) if mesh.dim == 3 else None,
+        vertex_tags=_mesh_tags(
+            domain, mesh.corners[:, None], np.ones(len(mesh.corners), dtype=np.int32)
         ),
         names=dict(mesh.names),
     )
+
+
+def _mesh_tags(domain: Any, simplices: NDArray[np.int32], tags: NDArray[np.int32]) -> Any:
+    """Return the tags of facets, edges or vertices that are given by their points."""
+    dim = simplices.shape[1] - 1
+    known = _entities(domain, dim)
+    encoder = RowKeys(known, len(domain.geometry.x))
+    keys, wanted = encoder.encode(known), encoder.encode(simplices)
+    order = np.argsort(keys)
+    rows = order[np.searchsorted(keys[order], wanted)]
+    ascending = np.argsort(rows)
+    return dolfinx.mesh.meshtags(domain, dim, rows[ascending].astype(np.int32), tags[ascending])
 
 
 def from_dolfinx(
@@ -90,6 +105,9 @@ def from_dolfinx(
     cell_tags: Any = None,
     facet_tags: Any = None,
     names: dict[tuple[int, int], str] | None = None,
+    *,
+    edge_tags: Any = None,
+    vertex_tags: Any = None,
 ) -> Mesh:
     """Return a dolfinx mesh with its tags as a `Mesh`.
 
@@ -100,6 +118,10 @@ def from_dolfinx(
     cell_tags, facet_tags : dolfinx.mesh.MeshTags, optional
         Cells without a tag get 0.
     names : mapping of (dim, tag) to str, optional
+    edge_tags : dolfinx.mesh.MeshTags, optional
+        Of edges in 3D, which become ridges.
+    vertex_tags : dolfinx.mesh.MeshTags, optional
+        Vertices with any tag become corners.
 
     Returns
     -------
@@ -132,8 +154,13 @@ def from_dolfinx(
         tags[cell_tags.indices] = cell_tags.values
     marked: dict[str, Any] = {}
     if facet_tags is not None:
-        marked["facets"] = _facets(domain)[facet_tags.indices]
+        marked["facets"] = _entities(domain, dim - 1)[facet_tags.indices]
         marked["facet_tags"] = facet_tags.values
+    if edge_tags is not None and dim == 3:
+        marked["edges"] = _entities(domain, 1)[edge_tags.indices]
+        marked["edge_tags"] = edge_tags.values
+    if vertex_tags is not None:
+        marked["corners"] = _entities(domain, 0)[vertex_tags.indices, 0]
     return Mesh(points=points, cells=cells, cell_tags=tags, names=names or {}, **marked)
 
 
@@ -143,24 +170,25 @@ def point_values(function: Any) -> Float:
     Parameters
     ----------
     function : dolfinx.fem.Function
-        Continuous, linear; scalar or vector.
+        Continuous, linear; a scalar, vector or tensor such as a metric.
 
     Returns
     -------
-    (n,) or (n, c) array
-        In the order of the `Mesh` that the domain was made of.
+    (n, ...) array
+        In the order of the `Mesh` that the domain was made of; as many further axes as the
+        function has.
     """
     space = function.function_space
     nodes, dofs = _p1_maps(space)
-    size = space.dofmap.bs
+    shape = _value_shape(space)
     given = np.asarray(space.mesh.geometry.input_global_indices)
-    values = np.empty((len(given), size))
-    values[given[nodes]] = function.x.array.reshape(-1, size)[dofs]
-    return values[:, 0] if size == 1 else values
+    values = np.empty((len(given), *shape))
+    values[given[nodes]] = function.x.array.reshape(-1, *shape)[dofs]
+    return values
 
 
 def to_function(space: Any, values: ArrayLike) -> Any:
-    """Return the function of a P1 space that has the given (n,) or (n, c) values at the points.
+    """Return the function of a P1 space that has the given (n, ...) values at the points.
 
     Raises
     ------
@@ -168,14 +196,22 @@ def to_function(space: Any, values: ArrayLike) -> Any:
         If the shape does not fit.
     """
     nodes, dofs = _p1_maps(space)
+    shape = _value_shape(space)
     given = np.asarray(space.mesh.geometry.input_global_indices)
-    size = space.dofmap.bs
     array = np.asarray(values, dtype=np.float64)
-    if array.shape not in ((len(given), size), (len(given),) if size == 1 else ()):
-        raise ValueError(f"values of shape {array.shape} at {len(given)} points with {size} each")
+    if array.shape != (len(given), *shape):
+        raise ValueError(f"values of shape {array.shape}, not {(len(given), *shape)}")
     function = dolfinx.fem.Function(space)
-    function.x.array.reshape(-1, size)[dofs] = array.reshape(-1, size)[given[nodes]]
+    function.x.array.reshape(-1, *shape)[dofs] = array[given[nodes]]
     return function
+
+
+def _value_shape(space: Any) -> tuple[int, ...]:
+    """Return the shape of one value: () of a scalar, (d, d) of a metric."""
+    shape = tuple(space.value_shape)
+    if math.prod(shape) != space.dofmap.bs:
+        raise TypeError(f"values of shape {shape} have {space.dofmap.bs} unknowns at each point")
+    return shape
 
 
 def _p1_maps(space: Any) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -186,11 +222,10 @@ def _p1_maps(space: Any) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     return nodes, dofs
 
 
-def _facets(domain: Any) -> NDArray[np.int32]:
-    """Return the points of every facet, as numbered when they were given."""
-    dim = domain.topology.dim
-    domain.topology.create_entities(dim - 1)
-    domain.topology.create_connectivity(dim - 1, dim)
-    count = domain.topology.index_map(dim - 1).size_local
-    rows = dolfinx.mesh.entities_to_geometry(domain, dim - 1, np.arange(count, dtype=np.int32))
+def _entities(domain: Any, dim: int) -> NDArray[np.int32]:
+    """Return the points of every facet, edge or vertex, as numbered when they were given."""
+    domain.topology.create_entities(dim)
+    domain.topology.create_connectivity(dim, domain.topology.dim)
+    count = domain.topology.index_map(dim).size_local
+    rows = dolfinx.mesh.entities_to_geometry(domain, dim, np.arange(count, dtype=np.int32))
     return np.asarray(np.asarray(domain.geometry.input_global_indices)[rows], dtype=np.int32)

@@ -1,7 +1,8 @@
 """MFEM's meshes to `Mesh` and back, through PyMFEM. Points and cells keep their order.
 
-MFEM's attributes are positive. Where a mesh has tags below 1, `to_mfem` numbers the tags of that
-dimension 1, 2, ... in ascending order.
+MFEM's attributes are positive: `to_mfem` keeps tags above 0, and numbers the others of a dimension
+on from the largest, in ascending order. Names of tags are MFEM's attribute sets. MFEM has no tags
+for edges in space nor for vertices.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..mesh import Mesh
 from ..topology import cell_determinants
@@ -21,13 +22,20 @@ except ImportError as error:
     raise
 
 _TRIANGLE, _TETRAHEDRON = 2, 4  # mfem::Element::Type
+_BY_NODES = 0  # mfem::Ordering::byNODES
+
+Float = NDArray[np.float64]
 
 
 def attributes(tags: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Return the MFEM attributes of (k,) tags: the same if positive, else their rank from 1."""
-    if (tags > 0).all():
+    """Return the MFEM attributes of (k,) tags: the same if positive, else further numbers."""
+    positive = tags > 0
+    if positive.all():
         return tags
-    return (np.unique(tags, return_inverse=True)[1].ravel() + 1).astype(np.int32)
+    ranks = np.unique(tags[~positive], return_inverse=True)[1].ravel()
+    numbered = tags.copy()
+    numbered[~positive] = ranks + 1 + tags[positive].max(initial=0)
+    return numbered
 
 
 def to_mfem(mesh: Mesh) -> Any:
@@ -48,13 +56,23 @@ def to_mfem(mesh: Mesh) -> Any:
     # Our facets point outward already; MFEM's own check stops at facets inside.
     made.FinalizeTopology()
     made.Finalize(False, False)
+    for sets, dim, tags in (
+        (made.attribute_sets, mesh.dim, mesh.cell_tags),
+        (made.bdr_attribute_sets, mesh.dim - 1, mesh.facet_tags),
+    ):
+        for tag, attribute in dict(
+            zip(tags.tolist(), attributes(tags).tolist(), strict=True)
+        ).items():
+            if (dim, tag) in mesh.names:
+                sets.SetAttributeSet(mesh.names[dim, tag], mfem.intArray([attribute]))
     return made
 
 
 def from_mfem(other: Any) -> Mesh:
     """Return an `mfem.Mesh` of straight triangles or tetrahedra as a `Mesh`.
 
-    Attributes of elements and boundary elements become tags.
+    Attributes of elements and boundary elements become tags, called by the first attribute set, in
+    alphabetical order, that holds nothing else.
 
     Raises
     ------
@@ -81,4 +99,66 @@ def from_mfem(other: Any) -> Mesh:
         cell_tags=np.array(other.GetAttributeArray(), np.int32),
         facets=np.array(facets, np.int32).reshape(-1, dim),
         facet_tags=np.array(other.GetBdrAttributeArray(), np.int32),
+        names={**_names(other.bdr_attribute_sets, dim - 1), **_names(other.attribute_sets, dim)},
     )
+
+
+def point_values(function: Any) -> Float:
+    """Return the values of a `GridFunction` at the points of the mesh.
+
+    Parameters
+    ----------
+    function : mfem.GridFunction
+        Of an `H1_FECollection` of any order; of one or more components, in any ordering.
+
+    Returns
+    -------
+    (n,) or (n, c) array
+        For the fields of the `Mesh` that the mesh of the function was made of.
+
+    Raises
+    ------
+    TypeError
+        If the space is another.
+    """
+    return np.array(_nodal(function.FESpace(), function.GetDataArray()))
+
+
+def to_function(space: Any, values: ArrayLike) -> Any:
+    """Return the `GridFunction` of a linear space that has (n,) or (n, c) values at the points.
+
+    Raises
+    ------
+    TypeError
+        If the space is not that of ``H1_FECollection(1, dim)``.
+    ValueError
+        If the shape does not fit.
+    """
+    if space.GetNDofs() != space.GetMesh().GetNV():
+        raise TypeError(f"the space is not linear: {space.GetNDofs()} unknowns for each component")
+    function = mfem.GridFunction(space)
+    nodal = _nodal(space, function.GetDataArray())
+    array = np.asarray(values, dtype=np.float64)
+    if array.shape != nodal.shape and array.shape != (*nodal.shape, 1):
+        raise ValueError(f"values of shape {array.shape}, not {nodal.shape}")
+    nodal[:] = array.reshape(nodal.shape)
+    return function
+
+
+def _nodal(space: Any, unknowns: Float) -> Float:
+    """Return a view of the unknowns at the points, which come first."""
+    if not space.FEColl().Name().startswith("H1_"):
+        raise TypeError(f"the space is no H1: {space.FEColl().Name()}")
+    components, count, n = space.GetVDim(), space.GetNDofs(), space.GetMesh().GetNV()
+    by_nodes = space.GetOrdering() == _BY_NODES
+    table = unknowns.reshape(components, count).T if by_nodes else unknowns.reshape(count, -1)
+    return table[:n, 0] if components == 1 else table[:n]
+
+
+def _names(sets: Any, dim: int) -> dict[tuple[int, int], str]:
+    names: dict[tuple[int, int], str] = {}
+    for name in sorted(sets.GetAttributeSetNames()):
+        members = sets.GetAttributeSet(name).ToList()
+        if len(members) == 1:
+            names.setdefault((dim, members[0]), name)
+    return names

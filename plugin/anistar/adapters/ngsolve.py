@@ -5,44 +5,56 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..mesh import Mesh
 from ..topology import cell_determinants
 
 try:
     import ngsolve
+    from netgen.meshing import Element0D
     from netgen.meshing import Mesh as NetgenMesh
 except ImportError as error:
     error.add_note("anistar's NGSolve adapter needs it: pip install 'anistar[ngsolve]'")
     raise
 
+Float = NDArray[np.float64]
+
+_CORNER = "corner"
+_NAMELESS = ("", "default")
+
 
 def to_ngsolve(mesh: Mesh) -> Any:
     """Return the mesh as an `ngsolve.Mesh`.
 
-    Cell tags become materials and facet tags boundaries, called by their names, or by their
-    numbers where they have none. The vector of ``H1(order=1)`` has the values at the points in
-    their order.
+    Cell tags become materials, facet tags boundaries and (3D) edge tags boundaries of boundaries,
+    called by their names, or by their numbers where they have none. Corners become points called
+    ``corner``. The vector of ``H1(order=1)`` has the values at the points in their order.
     """
     netgen = NetgenMesh(dim=mesh.dim)
     netgen.AddPoints(np.pad(mesh.points, ((0, 0), (0, 3 - mesh.dim))))
     for dim, rows, tags in (
         (mesh.dim, mesh.cells, mesh.cell_tags),
         (mesh.dim - 1, mesh.facets, mesh.facet_tags),
+        *([(1, mesh.edges, mesh.edge_tags)] if mesh.dim == 3 else []),
     ):
         for tag in map(int, np.unique(tags)):
             region = netgen.AddRegion(mesh.names.get((dim, tag), str(tag)), dim=dim)
             members = np.ascontiguousarray(rows[tags == tag])
             netgen.AddElements(dim=dim, index=region, data=members, base=0)
+    for corner in mesh.corners.tolist():
+        netgen.Add(Element0D(corner + 1, index=1))
+    if len(mesh.corners):
+        (netgen.SetCD2Name if mesh.dim == 2 else netgen.SetCD3Name)(1, _CORNER)
     return ngsolve.Mesh(netgen)
 
 
 def from_ngsolve(other: Any) -> Mesh:
     """Return an `ngsolve.Mesh` of triangles or tetrahedra as a `Mesh`.
 
-    Materials and boundaries become tags 1, 2, ... in NGSolve's order, with their names; several
-    of one name become one tag.
+    Materials, boundaries and (3D) named edges become tags 1, 2, ... in NGSolve's order, with their
+    names; several of one name become one tag. Named points become corners. Netgen has an edge
+    and a point for each of the geometry; those without a name of their own are left out.
 
     Raises
     ------
@@ -60,14 +72,100 @@ def from_ngsolve(other: Any) -> Mesh:
     facets, facet_tags, sides = _read(elements[dim - 1]().NumPy(), dim - 1, other.GetBoundaries())
     inverted = cell_determinants(points, cells) < 0
     cells[inverted, -2:] = cells[inverted, :-3:-1]
+    ridges = _ridges(other) if dim == 3 else {}
     return Mesh(
         points=points,
         cells=cells,
         cell_tags=cell_tags,
         facets=facets,
         facet_tags=facet_tags,
-        names={**names, **sides},
+        corners=_corners(other),
+        names={**names, **sides, **ridges.pop("names", {})},
+        **ridges,
     )
+
+
+def point_values(function: Any) -> Float:
+    """Return the values of a `GridFunction` at the points of the mesh.
+
+    Parameters
+    ----------
+    function : ngsolve.GridFunction
+        Of `H1` of any order, of one or more dimensions, or a product of such spaces.
+
+    Returns
+    -------
+    (n,) or (n, c) array
+        For the fields of the `Mesh` that the mesh of the function was made of.
+
+    Raises
+    ------
+    TypeError
+        If the space is none of these.
+    """
+    if function.components:
+        return np.stack([point_values(part) for part in function.components], axis=1)
+    return np.array(_nodal(function))
+
+
+def to_function(space: Any, values: ArrayLike) -> Any:
+    """Return the `GridFunction` of a linear space that has (n,) or (n, c) values at the points.
+
+    Parameters
+    ----------
+    space : ngsolve.FESpace
+        `H1` of order 1 of one or more dimensions, or a product of such spaces.
+    values : (n,) or (n, c) array
+
+    Raises
+    ------
+    TypeError
+        If the space is none of these.
+    ValueError
+        If the shape does not fit.
+    """
+    function = ngsolve.GridFunction(space)
+    array = np.asarray(values, dtype=np.float64)
+    n, parts = space.mesh.nv, function.components or [function]
+    widths = [1 if part.space.dim == 1 else part.space.dim for part in parts]
+    if array.shape not in ((n, sum(widths)), (n,) if widths == [1] else ()):
+        raise ValueError(f"values of shape {array.shape} at {n} points with {sum(widths)} each")
+    columns = np.split(array.reshape(n, -1), np.cumsum(widths)[:-1], axis=1)
+    for part, column in zip(parts, columns, strict=True):
+        if part.space.ndof != n:
+            raise TypeError(f"the space is not linear: {part.space.ndof} unknowns, {n} points")
+        nodal = _nodal(part)
+        nodal[:] = column.reshape(nodal.shape)
+    return function
+
+
+def _nodal(function: Any) -> Float:
+    """Return a view of the unknowns at the points, which come first."""
+    space = function.space
+    if space.type != "h1ho" or space.ndof < space.mesh.nv:
+        raise TypeError(f"the space is no H1: {type(space).__name__}")
+    values = function.vec.FV().NumPy()
+    rows = values if space.dim == 1 else values.reshape(space.ndof, space.dim)
+    return np.asarray(rows[: space.mesh.nv])
+
+
+def _ridges(other: Any) -> dict[str, Any]:
+    """Return the named edges of a 3D mesh as arguments of `Mesh`."""
+    called = other.GetBBoundaries()
+    rows, tags, names = _read(other.ngmesh.Elements1D().NumPy(), 1, called)
+    own = np.isin(tags, [tag for (_, tag), name in names.items() if name not in _NAMELESS])
+    kept = {key: name for key, name in names.items() if name not in _NAMELESS}
+    return {"edges": rows[own], "edge_tags": tags[own], "names": kept}
+
+
+def _corners(other: Any) -> NDArray[np.int32]:
+    stratum = ngsolve.BBND if other.dim == 2 else ngsolve.BBBND
+    named = [
+        element.vertices[0].nr
+        for element in other.Elements(stratum)
+        if element.mat not in _NAMELESS
+    ]
+    return np.unique(named).astype(np.int32)
 
 
 def _read(
@@ -76,7 +174,7 @@ def _read(
     """Return the points, tags and names of elements of one dimension."""
     nodes = elements["nodes"]
     # Netgen counts nodes from 1; quadrilaterals and curved cells have more than a simplex.
-    if nodes.shape[1] > dim + 1 and nodes[:, dim + 1 :].any() and dim > 1:
+    if len(elements) and nodes.shape[1] > dim + 1 and nodes[:, dim + 1 :].any() and dim > 1:
         raise TypeError(f"there are {dim}-dimensional cells other than straight simplices")
     distinct = list(dict.fromkeys(called))
     tag_of = np.array([distinct.index(name) + 1 for name in called], dtype=np.int32)

@@ -21,7 +21,11 @@ def main() -> None:
     sys.argv = sys.argv[1:]
     # PETSc reads its options when petsc4py is initialised, which importing the adapter does.
     dolfinx_wheel.make_importable()
-    importlib.import_module("petsc4py").init([*sys.argv, "-dm_adaptor", "anistar"])
+    try:
+        petsc4py = importlib.import_module("petsc4py")
+    except ImportError as error:
+        raise SystemExit(f"{error}; {dolfinx_wheel.PETSC_IS_MISSING}") from error
+    petsc4py.init([*sys.argv, "-dm_adaptor", "anistar"])
     importlib.import_module("anistar.adapters.petsc").register()
     runpy.run_path(sys.argv[0], run_name="__main__")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..mesh import Mesh
 from ..topology import RowKeys
@@ -15,6 +15,8 @@ try:
 except ImportError as error:
     error.add_note("anistar's scikit-fem adapter needs it: pip install 'anistar[skfem]'")
     raise
+
+Float = NDArray[np.float64]
 
 
 def to_skfem(mesh: Mesh) -> Any:
@@ -76,6 +78,59 @@ def from_skfem(other: Any) -> Mesh:
         facet_tags=facet_tags[chosen],
         names={**names, **regions},
     )
+
+
+def point_values(basis: Any, unknowns: ArrayLike) -> Float:
+    """Return the values of a solution at the points of the mesh.
+
+    Parameters
+    ----------
+    basis : skfem.CellBasis
+        Of a Lagrange element of any degree, scalar or vector.
+    unknowns : (N,) array
+
+    Returns
+    -------
+    (n,) or (n, c) array
+        For the fields of the `Mesh` that the mesh of the basis was made of.
+
+    Raises
+    ------
+    TypeError
+        If the element has no unknowns at vertices.
+    """
+    at_vertices = _nodal(basis)
+    values = np.asarray(unknowns, dtype=np.float64)[at_vertices].T
+    return np.ascontiguousarray(values[:, 0] if values.shape[1] == 1 else values)
+
+
+def to_unknowns(basis: Any, values: ArrayLike) -> Float:
+    """Return the (N,) unknowns of a P1 basis that has (n,) or (n, c) values at the points.
+
+    Raises
+    ------
+    TypeError
+        If the basis has other unknowns than those at vertices.
+    ValueError
+        If the shape does not fit.
+    """
+    at_vertices = _nodal(basis)
+    if at_vertices.size != basis.N:
+        raise TypeError(f"the basis is not P1: {basis.N - at_vertices.size} further unknowns")
+    array = np.asarray(values, dtype=np.float64)
+    columns, n = at_vertices.shape
+    if array.shape not in ((n, columns), (n,) if columns == 1 else ()):
+        raise ValueError(f"values of shape {array.shape} at {n} points with {columns} each")
+    unknowns = np.empty(basis.N)
+    unknowns[at_vertices] = array.reshape(n, columns).T
+    return unknowns
+
+
+def _nodal(basis: Any) -> NDArray[np.int64]:
+    at_vertices = np.asarray(basis.nodal_dofs)
+    if at_vertices.shape[0] == 0:
+        raise TypeError(f"{type(basis.elem).__name__} has no unknowns at vertices")
+    return at_vertices
 
 
 def _tagged(

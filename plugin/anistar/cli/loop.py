@@ -68,7 +68,9 @@ def run(arguments: argparse.Namespace) -> int:
     )
     mesh, _ = read(arguments.input)
     folder = RunFolder(arguments.output, _settings(arguments, options))
-    finished = folder.load() if arguments.resume else []
+    if not arguments.resume:
+        folder.begin()
+    finished = folder.load()
     first = finished[0].mesh if finished else mesh
     solve = FileSolver(arguments.solver, folder.folder, arguments.format, first=len(finished))
     total = len(options.complexities) + 1 if options.complexities else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import tempfile
 from typing import Any
 
@@ -11,7 +12,7 @@ from ..file_solver import FileSolver
 from ..formats import read
 from ..loop import Solve
 from ..mesh import Mesh
-from ..study import BASELINES, Study, convergence_study
+from ..study import BASELINES, convergence_study
 from . import console
 from .options import (
     adapt_options,
@@ -55,6 +56,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
+    if arguments.picture:
+        importlib.import_module("anistar.pictures")  # without matplotlib the work ends here
     exact = function_of_position(arguments.exact)
     mesh, _ = read(arguments.input)
 
@@ -77,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.csv:
         study.write_csv(arguments.csv)
     if arguments.picture:
-        _draw(study, arguments.picture, mesh.dim)
+        study.write_picture(arguments.picture)
     if arguments.json:
         console.show_json(study)
         return 0
@@ -90,9 +93,3 @@ def run(arguments: argparse.Namespace) -> int:
     columns = ["meshes", "complexity", "points", "cells", "L2 error", "order"]
     console.show_table(f"order {study.order:.2f}", columns, rows)
     return 0
-
-
-def _draw(study: Study, path: str, dim: int) -> None:
-    from ..pictures import convergence_picture  # matplotlib is optional
-
-    convergence_picture(path, study.curves(), order=2 / dim, label="$L^2$ error")

@@ -228,7 +228,8 @@ def _fields(raw: RawMesh, cells: Block, used: Array, dim: int) -> dict[str, Fiel
     for name, values in raw.point_data.items():
         if len(values) != len(used):
             raise ValueError(f"field {name!r} has {len(values)} values for {len(used)} points")
-        for part, array in _split(raw, name, np.asarray(values)[used], dim).items():
+        kept = np.asarray(values) if used.all() else np.asarray(values)[used]
+        for part, array in _split(raw, name, kept, dim).items():
             fields[part] = Field(array, "points", _kind(raw, name, array))
     for name, values in cells.data.items():
         if len(values) != len(cells.rows):
@@ -254,15 +255,15 @@ def _split(raw: RawMesh, name: str, values: Array, dim: int) -> dict[str, Array]
         values = values.reshape(len(values), -1)
     width = values.shape[1]
     if width == dim:
-        return {name: values.astype(np.float64)}
+        return {name: np.asarray(values, np.float64)}
     if width == 6 and raw.six is not None:
         values = from_components(values.astype(np.float64), raw.six).reshape(-1, 9)
     elif width == 4 and dim == 2:
-        return {name: values.reshape(-1, 2, 2).astype(np.float64)}
+        return {name: np.asarray(values.reshape(-1, 2, 2), np.float64)}
     elif dim == 2 and width == 3 and not values[:, 2].any():
         return {name: values[:, :2].astype(np.float64)}
     if values.shape[1] == 9:
-        full = values.reshape(-1, 3, 3).astype(np.float64)
+        full = np.asarray(values.reshape(-1, 3, 3), np.float64)
         if dim == 3:
             return {name: full}
         if not full[:, 2, :2].any() and not full[:, :2, 2].any():

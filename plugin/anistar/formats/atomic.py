@@ -10,6 +10,12 @@ from pathlib import Path
 from ..errors import FormatError
 
 
+def remove_leftovers(folder: Path) -> None:
+    """Remove the temporary files that a killed process left in a folder."""
+    for path in folder.glob(".*.part*"):
+        path.unlink()
+
+
 @contextmanager
 def replaced(path: Path) -> Iterator[Path]:
     """Give a temporary path in the same folder; move it to `path` when the block succeeds.

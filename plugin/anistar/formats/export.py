@@ -32,7 +32,7 @@ def exported(mesh: Mesh, fields: Mapping[str, Field]) -> RawMesh:
             }
             blocks.append(Block(KIND_OF_DIM[dim], rows, tags, data))
     return RawMesh(
-        points=np.pad(mesh.points, ((0, 0), (0, 3 - mesh.dim))),
+        points=_in_space(mesh.points),
         blocks=blocks,
         names=dict(mesh.names),
         point_data={name: padded(field) for name, field in fields.items() if field.on == "points"},
@@ -44,9 +44,15 @@ def padded(field: Field) -> Array:
     values = field.values
     if values.ndim == 1:
         return values
+    return _in_space(values).reshape(len(values), -1)
+
+
+def _in_space(values: Array) -> Array:
+    """Return vectors or tensors with three directions; the same array if it has them."""
     missing = 3 - values.shape[1]
-    padding = [(0, 0)] + [(0, missing)] * (values.ndim - 1)
-    return np.ascontiguousarray(np.pad(values, padding).reshape(len(values), -1))
+    if missing == 0:
+        return values
+    return np.pad(values, [(0, 0)] + [(0, missing)] * (values.ndim - 1))
 
 
 def _no_value(values: Array, count: int) -> Array:

@@ -2,45 +2,45 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
-from .library import PETSc, overlap
+import numpy as np
+from numpy.typing import NDArray
 
-_LARGE = 2_000_000
+from .library import PETSc
+
+Float = NDArray[np.float64]
 
 
-def gathered(plex: Any, metric: Any) -> tuple[Any, Any]:
+def gathered(plex: Any, metric: Float) -> tuple[Any, Float]:
     """Return a DMPlex and its metric on the first process of its communicator.
 
-    Warns
-    -----
-    RuntimeWarning
-        If the mesh is so large that one process may not have the memory.
+    Collective.
 
-    Raises
-    ------
-    ValueError
-        If the DMPlex has an overlap, whose cells would come twice.
+    Parameters
+    ----------
+    plex : petsc4py.PETSc.DMPlex
+        Without an overlap, whose cells would come twice.
+    metric : (n, d, d) float64
+        At the n vertices that this process has.
+
+    Returns
+    -------
+    plex : petsc4py.PETSc.DMPlex
+        Empty on all but the first process.
+    metric : (n, d, d) float64
+        At its vertices.
     """
-    if overlap(plex) > 0:
-        raise ValueError("the DMPlex has an overlap: adapt it before distributeOverlap()")
     whole = plex.clone()
-    partitioner = whole.getPartitioner()
-    partitioner.setType(PETSc.Partitioner.Type.GATHER)
+    whole.getPartitioner().setType(PETSc.Partitioner.Type.GATHER)
     migration = whole.distribute()
-    section = _vertex_section(plex, metric)
     if migration is None:
         return whole, metric
-    _, moved = whole.distributeField(migration, section, metric)
-    first, end = whole.getHeightStratum(0)
-    if end - first > _LARGE:
-        warnings.warn(
-            f"{end - first} cells are adapted on one of {plex.comm.size} processes",
-            RuntimeWarning,
-            stacklevel=2,
-        )
-    return whole, moved
+    values = PETSc.Vec().createMPI((metric.size, PETSc.DECIDE), comm=plex.comm)
+    values.setArray(metric.ravel())
+    _, moved = whole.distributeField(migration, _vertex_section(plex), values)
+    dim = plex.getDimension()
+    return whole, np.array(moved.getArray(readonly=True)).reshape(-1, dim, dim)
 
 
 def scattered(plex: Any) -> Any:
@@ -50,15 +50,9 @@ def scattered(plex: Any) -> Any:
     return plex
 
 
-def _vertex_section(plex: Any, metric: Any) -> Any:
-    """Return the layout of a metric: the same number of values at every vertex."""
-    first, end = plex.getDepthStratum(0)
-    totals = plex.comm.tompi4py().allreduce((metric.getLocalSize(), end - first), op=_add)
-    size = totals[0] // totals[1]
+def _vertex_section(plex: Any) -> Any:
+    """Return the layout of a metric: one tensor at every vertex."""
+    dim = plex.getDimension()
     layout = plex.clone()
     layout.setNumFields(1)
-    return layout.createSection([size], [size] + [0] * plex.getDimension())
-
-
-def _add(a: tuple[int, int], b: tuple[int, int]) -> tuple[int, int]:
-    return a[0] + b[0], a[1] + b[1]
+    return layout.createSection([dim**2], [dim**2] + [0] * dim)

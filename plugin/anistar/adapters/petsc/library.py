@@ -15,9 +15,7 @@ dolfinx_wheel.make_importable()
 try:
     from petsc4py import PETSc as PETSc
 except ImportError as error:
-    error.add_note(
-        "anistar's PETSc adapter needs petsc4py: pip install 'anistar[dolfinx]' or 'anistar[petsc]'"
-    )
+    error.add_note(dolfinx_wheel.PETSC_IS_MISSING)
     raise
 
 #: Signature of a metric adaptor, `DMGenerateFunctions.adaptmetric`: the DM, the metric, labels of
@@ -94,6 +92,33 @@ def plex_at(address: int) -> Any:
 def vec_at(address: int) -> Any:
     """Return the petsc4py object of a Vec that C has handed over; C keeps its own reference."""
     return _from_c("PyPetscVec_New", address)
+
+
+def label_at(address: int) -> Any:
+    """Return the petsc4py object of a DMLabel that C has handed over."""
+    return _from_c("PyPetscDMLabel_New", address)
+
+
+def add_label(plex: Any, label: Any) -> None:
+    """Give a DM a label that exists already, as DMAddLabel does in C."""
+    function = library().DMAddLabel
+    function.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+    _checked(function(plex.handle, label.handle))
+
+
+def processes(plex: Any) -> Any:
+    """Return the communicator of a DM for messages of Python objects.
+
+    Raises
+    ------
+    ImportError
+        If mpi4py is missing, which only a DM on several processes needs.
+    """
+    try:
+        return plex.comm.tompi4py()
+    except ImportError as error:
+        error.add_note("a DM on several processes needs mpi4py: pip install mpi4py")
+        raise
 
 
 def start_error(plex: Any, message: str) -> int:

@@ -63,8 +63,15 @@ def metric_from_vec(plex: Any, vec: Any) -> Float:
     isotropic, or one value for all if it is uniform.
     """
     n, dim = _vertices(plex), plex.getDimension()
+    if plex.metricIsUniform():
+        # One process of all holds the value.
+        return np.tile(vec.max()[1] * np.eye(dim), (n, 1, 1))
     values = np.array(vec.getArray(readonly=True), dtype=np.float64)
-    if plex.metricIsUniform() or plex.metricIsIsotropic():
+    if plex.metricIsIsotropic():
+        if values.size != n:
+            raise ValueError(
+                f"an isotropic metric of {values.size} values does not fit {n} vertices"
+            )
         return np.broadcast_to(values[:, None, None] * np.eye(dim), (n, dim, dim)).copy()
     if values.size != n * dim * dim:
         raise ValueError(f"a metric vector of {values.size} values does not fit {n} vertices")

@@ -14,6 +14,10 @@ from typing import Any
 import meshio
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 
 from ...fields import Field, as_fields
 from ...formats.assembly import assembled
@@ -21,19 +25,6 @@ from ...formats.export import exported
 from ...formats.meshio_guard import NAMES, TAGS, content_of
 from ...formats.raw import KIND_DIM
 from ...mesh import Mesh
-
-try:
-    from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
-    from vtkmodules.util.numpy_support import (
-        numpy_to_vtk,
-        numpy_to_vtkIdTypeArray,
-        vtk_to_numpy,
-    )
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
-except ImportError as error:
-    error.add_note("anistar's VTK adapter needs it: pip install 'anistar[vtk]'")
-    raise
 
 _KINDS = {
     1: "vertex",
@@ -68,6 +59,8 @@ def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) ->
     Returns
     -------
     vtkUnstructuredGrid
+        Scalar fields at points and, in 3D, the points and all fields there are the arrays given,
+        not copies.
     """
     content = exported(mesh, as_fields(mesh, fields))
     grid = vtkUnstructuredGrid()
@@ -108,7 +101,8 @@ def from_vtk(grid: Any) -> tuple[Mesh, dict[str, Field]]:
     -------
     mesh : Mesh
     fields : dict of str to Field
-        Symmetric tensors of six components are taken in VTK's order.
+        Symmetric tensors of six components are taken in VTK's order. Where every point has a cell
+        and no component has to go, the values are those of the grid, not copies.
 
     Raises
     ------

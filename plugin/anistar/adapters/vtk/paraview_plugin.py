@@ -50,7 +50,7 @@ class _Properties:
         self.set_fields(*names.split())
 
 
-@smproxy.filter(label="anistar: metric")
+@smproxy.filter(label="Anistar Metric")
 @smproperty.input(name="Input")
 @smdomain.datatype(dataTypes=["vtkUnstructuredGrid"], composite_data_supported=False)
 @smhint.xml('<ShowInMenu category="anistar" />')
@@ -58,7 +58,7 @@ class AnistarMetric(_Properties, vtkAnistarMetric):
     """Add the metric that point arrays ask for."""
 
 
-@smproxy.filter(label="anistar: adapt")
+@smproxy.filter(label="Anistar Adapt")
 @smproperty.input(name="Input")
 @smdomain.datatype(dataTypes=["vtkUnstructuredGrid"], composite_data_supported=False)
 @smhint.xml('<ShowInMenu category="anistar" />')
