@@ -1,6 +1,7 @@
 """Configuration of the documentation."""
 
 import importlib.metadata
+import logging
 import sys
 from pathlib import Path
 
@@ -30,6 +31,9 @@ exclude_patterns = ["_build"]
 autosummary_generate = True
 autodoc_typehints = "none"
 numpydoc_show_class_members = False
+
+# Sphinx would show every assembly of a matrix in the examples.
+logging.getLogger("skfem").setLevel(logging.WARNING)
 
 sphinx_gallery_conf = {
     "examples_dirs": "../solver_examples",
