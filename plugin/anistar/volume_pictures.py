@@ -20,6 +20,9 @@ except ImportError as error:
 
 Floats = NDArray[np.float64]
 
+#: Direction from the mesh to the eye, if no other is given.
+VIEW = (1.0, 0.8, 0.6)
+
 _INCHES = 8.0
 _DPI = 150
 _LINE = 0.2
@@ -32,7 +35,7 @@ def volume_picture(
     mesh: Mesh,
     values: ArrayLike,
     *,
-    view: tuple[float, float, float] = (1.0, 0.8, 0.6),
+    view: tuple[float, float, float] = VIEW,
     keep: ArrayLike | None = None,
     label: str = "",
 ) -> None:
