@@ -12,7 +12,9 @@ from .pictures import INK, Target
 from .topology import boundary_facets
 
 try:
+    from matplotlib import colormaps
     from matplotlib.collections import PolyCollection
+    from matplotlib.colors import ListedColormap
     from matplotlib.figure import Figure
 except ImportError as error:
     error.add_note("pictures need matplotlib: pip install 'anistar[plot]'")
@@ -77,7 +79,8 @@ def volume_picture(
     order = seen[np.argsort(corners[seen].mean(axis=1) @ towards)]
     flat = np.stack([corners[order] @ across, corners[order] @ up], axis=-1)
     nodal = np.asarray(values, dtype=np.float64)
-    _draw(path, flat, nodal[facets[order]].mean(axis=1), facing[order], label)
+    limits = float(nodal.min()), float(nodal.max())
+    _draw(path, flat, nodal[facets[order]].mean(axis=1), limits, facing[order], label)
 
 
 def _axes_of(view: Floats) -> tuple[Floats, Floats, Floats]:
@@ -91,13 +94,27 @@ def _axes_of(view: Floats) -> tuple[Floats, Floats, Floats]:
     return across, np.cross(towards, across), towards
 
 
-def _draw(path: Target, flat: Floats, colours: Floats, facing: Floats, label: str) -> None:
+def _colours() -> Any:
+    """Return colours that are light enough for edges and shades to be seen on them."""
+    return ListedColormap(0.35 + 0.65 * colormaps["coolwarm"](np.linspace(0, 1, 256))[:, :3])
+
+
+def _draw(
+    path: Target,
+    flat: Floats,
+    colours: Floats,
+    limits: tuple[float, float],
+    facing: Floats,
+    label: str,
+) -> None:
     figure = Figure(figsize=(_INCHES, 0.85 * _INCHES), layout="constrained")
     axes = figure.add_subplot(aspect="equal")
     axes.set_axis_off()
     triangles: Any = PolyCollection(
-        list(flat), array=colours, cmap="YlGnBu", edgecolors=INK, linewidths=_LINE
+        list(flat), array=colours, cmap=_colours(), edgecolors=INK, linewidths=_LINE
     )
+    # Parts of one field have the same colours.
+    triangles.set_clim(*limits)
     axes.add_collection(triangles)
     axes.autoscale_view()
     figure.colorbar(triangles, ax=axes, label=label, fraction=0.03, pad=0.01)

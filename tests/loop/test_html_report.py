@@ -99,7 +99,7 @@ def test_a_page_about_a_3d_loop_shows_the_mesh_from_outside_and_cut(tmp_path):
     write_html_report(tmp_path, tmp_path / "page.html")
     page = Page((tmp_path / "page.html").read_text())
     assert "The mesh and the field u." in page.said
-    assert "u in the half behind." in page.said
+    assert "u, the half with small x." in page.said
 
 
 @pytest.mark.parametrize(
