@@ -90,5 +90,5 @@ bench: ## Measure against other programs and print a table
 	@$(PYTHON) tests/benchmarks/run_cases.py
 
 clean: ## Remove everything that these commands made
-	@rm -rf .venv build dist docs/_build docs/api/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf .venv build dist docs/_build docs/api/generated docs/auto_examples .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +

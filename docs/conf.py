@@ -1,6 +1,13 @@
 """Configuration of the documentation."""
 
 import importlib.metadata
+import logging
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import gallery
 
 project = "anistar"
 author = "The anistar authors"
@@ -14,6 +21,7 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
     "sphinx.ext.viewcode",
+    "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
 ]
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
@@ -23,6 +31,23 @@ exclude_patterns = ["_build"]
 autosummary_generate = True
 autodoc_typehints = "none"
 numpydoc_show_class_members = False
+
+# Sphinx would show every assembly of a matrix in the examples.
+logging.getLogger("skfem").setLevel(logging.WARNING)
+
+sphinx_gallery_conf = {
+    "examples_dirs": "../solver_examples",
+    "gallery_dirs": "auto_examples",
+    "filename_pattern": gallery.runnable(),
+    "reset_argv": "gallery.small_arguments",
+    "reset_modules": ("gallery.with_anistar_in_petsc",),
+    "image_scrapers": ("gallery.drawn_picture",),
+    "subsection_order": [f"../solver_examples/{folder}" for folder in gallery.PACKAGES],
+    "download_all_examples": False,
+    "show_signature": False,
+    "write_computation_times": False,
+    "remove_config_comments": True,
+}
 
 bibtex_bibfiles = ["references.bib"]
 bibtex_default_style = "plain"

@@ -150,7 +150,7 @@ def sqrt_metric(M: Array) -> Array:
 
 
 def absolute(H: Array, floor: ArrayLike = 0.0) -> Array:
-    """Return |H|: the absolute values of the eigenvalues of `H`, at least `floor`.
+    """Return ``|H|``: the absolute values of the eigenvalues of `H`, at least `floor`.
 
     Parameters
     ----------

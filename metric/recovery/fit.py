@@ -369,7 +369,9 @@ def _gain(
         unit[first + c] = scale[first + c]
         inverse = _substituted(normal, unit)[first + c, 0] * scale[first + c]
         phi = weight * basis[first + c] ** 2
-        mean = np.add.reduceat(weight * phi, starts) / np.add.reduceat(phi, starts)
+        total = np.add.reduceat(phi, starts)
+        # a function that is zero at all samples has no weight; the pivot of its patch is zero
+        mean = np.add.reduceat(weight * phi, starts) / np.where(total > 0.0, total, 1.0)
         variance = inverse * mean + response[first + c] ** 2
         square += variance * (1.0 if i == j else 2.0)
     return np.asarray(np.sqrt(square))

@@ -20,6 +20,7 @@ from .pictures import bars_picture, convergence_picture, mesh_picture, solution_
 from .report import write_text
 from .run_folder import REPORT, SERIES
 from .series import member
+from .volume_pictures import volume_picture
 
 _STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #1d2733;
@@ -171,13 +172,26 @@ def _iteration(
 
 
 def _pictures(mesh: Mesh, fields: Mapping[str, Field]) -> str:
-    if mesh.dim != 2:
-        return '<p class="muted">Pictures are made of 2D meshes; the series opens in ParaView.</p>'
+    if mesh.dim == 3:
+        return _volume_pictures(mesh, fields)
     shown = [_figure(lambda file: mesh_picture(file, mesh), "The mesh.")]
     for name, field in fields.items():
         if field.on == "points" and field.kind == "scalar":
             draw = partial(solution_picture, mesh=mesh, values=field.values, label=name)
             shown.append(_figure(draw, f"The field {name}."))
+    return f'<div class="pair">{"".join(shown)}</div>'
+
+
+def _volume_pictures(mesh: Mesh, fields: Mapping[str, Field]) -> str:
+    """Show the surface and what lies behind the middle in x."""
+    x = mesh.points[:, 0]
+    behind = x[mesh.cells].mean(axis=1) < (x.min() + x.max()) / 2
+    shown = []
+    for name, field in fields.items():
+        if field.on == "points" and field.kind == "scalar":
+            draw = partial(volume_picture, mesh=mesh, values=field.values, label=name)
+            shown.append(_figure(draw, f"The mesh and the field {name}."))
+            shown.append(_figure(partial(draw, keep=behind), f"{name}, the half with small x."))
     return f'<div class="pair">{"".join(shown)}</div>'
 
 

@@ -207,7 +207,7 @@ def convergence_picture(
         axes.loglog(*zip(*curve, strict=True), marker=mark, color=colour, label=name)
     last = np.array(list(curves.values())[-1], dtype=np.float64)
     line = 0.6 * last[-1, 1] * (last[:, 0] / last[-1, 0]) ** -order
-    axes.loglog(last[:, 0], line, "--", color=PALE, label=f"order $N^{{-{order:g}}}$")
+    axes.loglog(last[:, 0], line, "--", color=PALE, label=f"order $N^{{-{order:.2g}}}$")
     axes.set(xlabel="unknowns $N$", ylabel=label)
     axes.grid(True, which="both", color="#e4e8ec", linewidth=0.6)
     axes.legend(frameon=False)

@@ -1,33 +1,46 @@
-"""Boundary layers along two sides of a square, solved with PyMFEM on meshes that adapt to them.
-
-``-eps Laplace(u) + u = 0`` on the unit square. ``u = exp(-x / sqrt(eps)) + exp(-y / sqrt(eps))`` is
-prescribed on the boundary, and is then the solution everywhere.
 """
+MFEM: boundary layers
+=====================
+
+Boundary layers along the sides of a square or a cube, solved with PyMFEM on meshes that adapt to
+them. ``-eps Laplace(u) + u = 0``; the sum of ``exp(-x_i / sqrt(eps))`` over the coordinates is
+prescribed on the boundary, and is then the solution everywhere::
+
+    python boundary_layer.py [--dim 3]
+"""
+
+import argparse
 
 import mfem.ser as mfem
 import numpy as np
 
 import anistar
 from anistar.adapters.mfem import from_mfem, to_mfem
+from anistar.interpolation_error import l2_error
 from anistar.pictures import mesh_picture
+from anistar.volume_pictures import volume_picture
 
 EPSILON = 1e-4
+COMPLEXITIES = {2: (125, 250, 500, 1000), 3: (500, 1000, 2000)}
+SIZES = {2: (16, 32, 64), 3: (8, 16, 24)}
 
 
 def exact(points):
-    """Return the solution at (n, 2) points."""
+    """Return the solution at (n, d) points."""
     return np.exp(-points / np.sqrt(EPSILON)).sum(axis=1)
 
 
-def square(n):
-    """Return a uniform mesh of the unit square, n cells a side, made by MFEM."""
-    return from_mfem(mfem.Mesh.MakeCartesian2D(n, n, mfem.Element.TRIANGLE))
+def uniform(dim, n):
+    """Return a uniform mesh of the unit square or cube, n boxes a side, made by MFEM."""
+    if dim == 2:
+        return from_mfem(mfem.Mesh.MakeCartesian2D(n, n, mfem.Element.TRIANGLE))
+    return from_mfem(mfem.Mesh.MakeCartesian3D(n, n, n, mfem.Element.TETRAHEDRON))
 
 
 def solve(mesh, fields):
     """Return the solution at the points of a mesh."""
     domain = to_mfem(mesh)
-    space = mfem.FiniteElementSpace(domain, mfem.H1_FECollection(1, 2))
+    space = mfem.FiniteElementSpace(domain, mfem.H1_FECollection(1, mesh.dim))
     everywhere = mfem.intArray([1] * domain.bdr_attributes.Max())
     fixed = mfem.intArray()
     space.GetEssentialTrueDofs(everywhere, fixed)
@@ -46,31 +59,29 @@ def solve(mesh, fields):
     return {"u": np.array(u.GetDataArray())}
 
 
-def error(mesh, u):
-    """Return the L2 error of nodal values, with the middles of the edges as quadrature points."""
-    corners = mesh.points[mesh.cells]
-    middles = (corners + np.roll(corners, 1, axis=1)) / 2
-    there = (u[mesh.cells] + np.roll(u[mesh.cells], 1, axis=1)) / 2
-    off = there - exact(middles.reshape(-1, 2)).reshape(there.shape)
-    areas = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 2
-    return float(np.sqrt((off**2).mean(axis=1) @ areas))
-
-
-def main(complexities=(125, 250, 500, 1000), sizes=(16, 32, 64), picture="boundary_layer.png"):
-    """Print the error against the number of unknowns, and draw the last mesh at the corner."""
+def main(dim=2, complexities=None, sizes=None, picture="boundary_layer.png"):
+    """Print the error against the number of unknowns, and draw the last mesh."""
     rows = []
-    for n in sizes:
-        mesh = square(n)
-        rows.append(("uniform", mesh.n_points, error(mesh, solve(mesh, {})["u"])))
-    loop = anistar.adapt_loop(solve, square(16), anistar.LoopOptions(complexities=complexities))
+    for n in sizes or SIZES[dim]:
+        mesh = uniform(dim, n)
+        rows.append(("uniform", mesh.n_points, l2_error(mesh, solve(mesh, {})["u"], exact)))
+    options = anistar.LoopOptions(complexities=complexities or COMPLEXITIES[dim])
+    loop = anistar.adapt_loop(solve, uniform(dim, 16 if dim == 2 else 6), options)
     for step in loop.steps[1:]:
-        rows.append(("adapted", step.mesh.n_points, error(step.mesh, step.fields["u"])))
-    for kind, unknowns, off in rows:
-        print(f"{kind} {unknowns:7d} unknowns, L2 error {off:.3e}")
-    if picture:
-        mesh_picture(picture, loop.steps[-1].mesh, box=(0.0, 0.1, 0.0, 0.1))
+        rows.append(("adapted", step.mesh.n_points, l2_error(step.mesh, step.fields["u"], exact)))
+    for kind, unknowns, error in rows:
+        print(f"{kind} {unknowns:7d} unknowns, L2 error {error:.3e}")
+    if dim == 2:
+        mesh_picture(picture, mesh=loop.steps[-1].mesh, box=(0.0, 0.1, 0.0, 0.1))
+    else:
+        volume_picture(picture, loop.steps[-1].mesh, loop.steps[-1].fields["u"], view=(-2, -3, 2))
     return rows
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--dim", type=int, choices=(2, 3), default=2)
+    parser.add_argument("--complexities", type=float, nargs="+")
+    parser.add_argument("--sizes", type=int, nargs="+", help="boxes a side of uniform meshes")
+    parser.add_argument("--picture", default="boundary_layer.png")
+    main(**vars(parser.parse_args()))

@@ -1,13 +1,21 @@
-"""Heat carried past a step and an obstacle, solved with scikit-fem on meshes that adapt to it.
+"""
+scikit-fem: heat in a channel
+=============================
 
+Heat carried past a step and an obstacle, solved with scikit-fem on meshes that adapt to it.
 ``-eps Laplace(u) + b . grad(u) = 0`` by P1 elements, stabilised along the wind (SUPG).
 """
+
+import argparse
 
 from skfem import Basis, BilinearForm, ElementTriP0, ElementTriP1, condense, solve
 
 import anistar
 from anistar.adapters.skfem import to_skfem
 from anistar.demo_problem import EPSILON, WIND, channel, upwind_times
+from anistar.pictures import solution_picture
+
+COMPLEXITIES = (500, 1000, 2000, 4000)
 
 
 @BilinearForm
@@ -28,15 +36,22 @@ def solve_heat(mesh, fields):
     return {"u": solve(*condense(transport.assemble(basis, tau=tau), x=u, D=fixed))}
 
 
-def main(complexities=(500, 1000, 2000, 4000), output="heat.vtu"):
-    """Adapt to growing complexities and write the last mesh and temperature."""
+def main(complexities=COMPLEXITIES, output="heat.vtu", picture=None):
+    """Adapt to growing complexities, write the last mesh and temperature, and draw them."""
     options = anistar.LoopOptions(complexities=complexities)
     loop = anistar.adapt_loop(solve_heat, channel(), options)
     for step in loop.steps:
         print(f"{step.mesh.n_points:6d} points, estimated L2 error {step.error['u']:.3e}")
-    anistar.write(output, loop.steps[-1].mesh, loop.steps[-1].fields)
+    last = loop.steps[-1]
+    anistar.write(output, last.mesh, last.fields)
+    if picture:
+        solution_picture(picture, last.mesh, last.fields["u"], label="temperature")
     return loop
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--complexities", type=float, nargs="+", default=COMPLEXITIES)
+    parser.add_argument("--output", default="heat.vtu")
+    parser.add_argument("--picture", default="heat.png")
+    main(**vars(parser.parse_args()))

@@ -1,10 +1,13 @@
-"""A front that crosses a square, solved with scikit-fem on meshes that follow it.
+"""
+scikit-fem: a front that moves
+==============================
 
-Burgers' equation ``du/dt + u (n . grad u) = nu Laplace(u)`` along a direction n. A wave of fixed
-shape that travels at speed 1/2 solves it, so the error can be measured. ``series.pvd`` opens in
-ParaView.
+A front that crosses a square, solved with scikit-fem on meshes that follow it. Burgers' equation
+``du/dt + u (n . grad u) = nu Laplace(u)`` along a direction n. A wave of fixed shape that travels
+at speed 1/2 solves it, so the error can be measured. ``series.pvd`` opens in ParaView.
 """
 
+import argparse
 import itertools
 
 import numpy as np
@@ -13,6 +16,7 @@ from skfem.helpers import dot, grad
 
 import anistar
 from anistar.adapters.skfem import from_skfem, to_skfem
+from anistar.pictures import mesh_picture
 from anistar.series import SeriesWriter
 
 NU = 0.005
@@ -67,7 +71,7 @@ def error(instant):
     return float(np.sqrt((off**2).mean(axis=1) @ areas))
 
 
-def main(complexity=700, end=0.8, steps=160, refinements=4, output="series.pvd"):
+def main(complexity=700, end=0.8, steps=160, refinements=4, output="series.pvd", picture=None):
     """Print the error at the end on a uniform mesh and on meshes that follow the front."""
     times = np.linspace(0.0, end, steps + 1)
     rows = []
@@ -99,8 +103,16 @@ def main(complexity=700, end=0.8, steps=160, refinements=4, output="series.pvd")
     rows.append(("following", max(w.points for w in done.windows), error(done.last)))
     for kind, points, off in rows:
         print(f"{kind} {points:7d} points, L2 error at the end {off:.3e}")
+    if picture:
+        mesh_picture(picture, done.last.mesh)
     return rows
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--complexity", type=float, default=700)
+    parser.add_argument("--end", type=float, default=0.8, help="when to stop")
+    parser.add_argument("--steps", type=int, default=160)
+    parser.add_argument("--output", default="series.pvd")
+    parser.add_argument("--picture", default="front.png")
+    main(**vars(parser.parse_args()))

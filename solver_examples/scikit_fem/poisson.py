@@ -1,15 +1,22 @@
-"""Poisson's equation on the unit square with a known circular layer: error against unknowns.
-
-``-Laplace(u) = f`` with u = tanh(20 (x^2 + y^2 - 1/2)) given on the boundary.
 """
+scikit-fem: a known layer
+=========================
+
+Poisson's equation on the unit square with a known circular layer: error against unknowns.
+``-Laplace(u) = f`` with ``u = tanh(20 (x^2 + y^2 - 1/2))`` given on the boundary.
+"""
+
+import argparse
 
 import numpy as np
 from skfem import Basis, BilinearForm, ElementTriP1, LinearForm, MeshTri, condense, solve
 
 import anistar
 from anistar.adapters.skfem import from_skfem, to_skfem
+from anistar.pictures import mesh_picture
 
 STEEPNESS = 20.0
+COMPLEXITIES = (250, 500, 1000, 2000, 4000)
 
 
 def exact(x):
@@ -38,15 +45,20 @@ def solve_poisson(mesh, fields):
     return {"u": solve(*condense(A, b, x=exact(mesh.points), D=basis.get_dofs().all()))}
 
 
-def main(complexities=(250, 500, 1000, 2000, 4000)):
-    """Print the error against the unknowns, and the observed order."""
+def main(complexities=COMPLEXITIES, picture=None):
+    """Print the error against the unknowns and the observed order, and draw the second mesh."""
     first = from_skfem(MeshTri().refined(4))
     study = anistar.convergence_study(solve_poisson, first, complexities, exact=exact)
     for row in study.table:
         print(f"{row.points:6d} unknowns, L2 error {row.error:.3e}")
     print(f"observed order {study.order:.2f}")
+    if picture:
+        mesh_picture(picture, study.steps[1].mesh)
     return study
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--complexities", type=float, nargs="+", default=COMPLEXITIES)
+    parser.add_argument("--picture", default="poisson.png")
+    main(**vars(parser.parse_args()))

@@ -1,13 +1,14 @@
-"""A cone that rotates: fifty transfers between adapted meshes, by all three methods.
+"""
+Transfer: a rotating cone
+=========================
 
-The mesh turns rigidly with the cone, which is the exact solution of the rotation, and the field
-is then transferred to a mesh made for the place where the cone is now. Mass, maximum and error
-after a full turn are those of the transfers alone.
-
-usage: python solver_examples/transfer/rotating_cone.py [picture.png]
+A cone that rotates: fifty transfers between adapted meshes, by all three methods. The mesh turns
+rigidly with the cone, which is the exact solution of the rotation, and the field is then
+transferred to a mesh made for the place where the cone is now. Mass, maximum and error after a
+full turn are those of the transfers alone.
 """
 
-import sys
+import argparse
 from dataclasses import dataclass
 
 import numpy as np
@@ -121,7 +122,11 @@ def plot(histories, path):
 
 
 if __name__ == "__main__":
-    for name, history in main(picture=sys.argv[1] if len(sys.argv) > 1 else None).items():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--n-transfers", type=int, default=50)
+    parser.add_argument("--size", type=float, default=0.02, help="of the smallest edges")
+    parser.add_argument("--picture")
+    for name, history in main(**vars(parser.parse_args())).items():
         change = history.mass[-1] / history.mass[0] - 1
         print(
             f"{name:13s} mass {change:+.1e}, values {history.minimum[-1]:.3f} to "

@@ -88,7 +88,7 @@ def test_the_command_writes_into_the_folder(run, capsys):
     assert (run / "report.html").stat().st_size > 100_000
 
 
-def test_a_page_about_a_3d_loop_says_where_its_pictures_are(tmp_path):
+def test_a_page_about_a_3d_loop_shows_the_mesh_from_outside_and_cut(tmp_path):
     folder = RunFolder(tmp_path, {})
     mesh = cube()
     folder.save(
@@ -97,7 +97,9 @@ def test_a_page_about_a_3d_loop_says_where_its_pictures_are(tmp_path):
         )
     )
     write_html_report(tmp_path, tmp_path / "page.html")
-    assert "opens in ParaView" in Page((tmp_path / "page.html").read_text()).said
+    page = Page((tmp_path / "page.html").read_text())
+    assert "The mesh and the field u." in page.said
+    assert "u, the half with small x." in page.said
 
 
 @pytest.mark.parametrize(

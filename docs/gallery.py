@@ -1,0 +1,86 @@
+"""How the gallery runs the solver examples: small, with a picture, where their package is."""
+
+import importlib
+import re
+import shutil
+import tempfile
+from pathlib import Path
+
+from anistar import dolfinx_wheel
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "solver_examples"
+
+#: Arguments that make the examples small enough for every build of the documentation.
+ARGUMENTS = {
+    "advection_diffusion": "--complexities 500 1000 2000 --output {folder}/heat.vtu",
+    "boundary_layer": "--dim 3 --complexities 500 1000 --sizes 8 13",
+    "cubic_reaction": "--dim 3 --complexities 500 1000 --sizes 8 13",
+    "moving_front": "--complexity 400 --end 0.2 --steps 40 --output {folder}/series.pvd",
+    "outflow_layers": "--complexities 500 1000 2000 --sizes 8 16",
+    "plate_with_hole": "--complexities 250 500 1000 --lengths 0.16 0.08",
+    "poisson": "--complexities 250 500 1000 2000",
+    "reaction_diffusion": "",
+    "rotating_cone": "--n-transfers 10 --size 0.04",
+}
+
+#: What each folder of examples needs.
+PACKAGES = {
+    "scikit_fem": "skfem",
+    "dolfinx": "dolfinx",
+    "ngsolve": "ngsolve",
+    "mfem": "mfem",
+    "petsc": "petsc4py",
+    "transfer": "matplotlib",
+}
+
+# What the examples write; it is gone when the documentation is built.
+_FOLDER = tempfile.TemporaryDirectory(prefix="anistar-gallery-")
+
+
+def runnable() -> str:
+    """Return a pattern of the examples whose package is installed; the others are only shown."""
+    dolfinx_wheel.make_importable()
+    folders = [folder for folder, package in PACKAGES.items() if _is_installed(package)]
+    return "|".join(re.escape(f"/{folder}/") for folder in folders) or "^$"
+
+
+def _is_installed(package: str) -> bool:
+    try:
+        importlib.import_module(package)
+    except ImportError:
+        return False
+    return True
+
+
+def _picture_of(name: str) -> Path:
+    return Path(_FOLDER.name) / f"{name}.png"
+
+
+def small_arguments(gallery_conf, script_vars):
+    """Return the words after the program's name in the command line of an example."""
+    name = Path(script_vars["src_file"]).stem
+    given = ARGUMENTS[name].format(folder=_FOLDER.name).split()
+    return [*given, "--picture", str(_picture_of(name))]
+
+
+def drawn_picture(block, block_vars, gallery_conf):
+    """Return reStructuredText that shows the picture an example has drawn, if it has."""
+    from sphinx_gallery.scrapers import figure_rst
+
+    drawn = _picture_of(Path(block_vars["src_file"]).stem)
+    if not drawn.exists():
+        return ""
+    shown = next(block_vars["image_path_iterator"])
+    shutil.move(drawn, shown)
+    return figure_rst([shown], gallery_conf["src_dir"])
+
+
+def with_anistar_in_petsc(gallery_conf, file_name):
+    """Do what ``python -m anistar.adapters.petsc_program`` does before it runs a program."""
+    name = Path(file_name).stem
+    if name == "reaction_diffusion":
+        from anistar.adapters import petsc
+
+        petsc.register()
+        petsc.PETSc.Options()["dm_adaptor"] = "anistar"
+        petsc.PETSc.Options()["picture"] = str(_picture_of(name))
