@@ -130,8 +130,8 @@ bool CavityOperator::add_rim(double hausdorff_number) {
       return false;
     if (!patch.is_planar && hausdorff_number > 0)
       for (Index end : edge.ends)
-        if (volume_.surface.deviation(2, edge.patch, mesh.vertex(end).x, x) >
-            hausdorff_number)
+        if (volume_.surface.strays(2, edge.patch, mesh.vertex(end), mesh.vertex(apex_),
+                                   hausdorff_number))
           return false;
     if (edge.is_boundary)
       outers_.push_back({{edge.ends[0], edge.ends[1], none},

@@ -5,6 +5,13 @@
 #include <algorithm>
 
 namespace anistar {
+namespace {
+
+/// Edges of a curved surface stay nearer to it than this, in the metric, or the layers
+/// of cells along it cross it; but they need not be shorter than that.
+constexpr double largest_lift = 1, shortest_lifted = .5;
+
+} // namespace
 
 SurfaceShape::SurfaceShape(std::vector<Patch> patches, std::vector<SurfaceCurve> curves,
                            const SurfaceInput &geometry, SurfaceProjection projection)
@@ -34,6 +41,21 @@ Vector<3> SurfaceShape::on_curve(Index c, const Vector<3> &x) const {
     return here.origin + here.direction * here.direction.dot(x - here.origin);
   const CurvedPieces *pieces = geometry_->ridge(here.is_given, here.tag);
   return pieces ? pieces->project(x).x : x;
+}
+
+bool SurfaceShape::strays(Index dimension, Index lies_on, const Vertex<3> &a,
+                          const Vertex<3> &b, double hausdorff_number) const {
+  if (is_flat(dimension, lies_on))
+    return false;
+  const Vector<3> e = b.x - a.x, middle = .5 * (a.x + b.x);
+  const Vector<3> lift = place(dimension, lies_on, middle) - middle;
+  if (lift.squaredNorm() > hausdorff_number * hausdorff_number * e.squaredNorm())
+    return true;
+  const auto square = [&](const Vector<3> &x) {
+    return .5 * (quadratic<3>(a.M, x) + quadratic<3>(b.M, x));
+  };
+  return square(lift) > largest_lift * largest_lift &&
+         square(e) > shortest_lifted * shortest_lifted;
 }
 
 } // namespace anistar

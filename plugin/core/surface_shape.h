@@ -2,6 +2,7 @@
 // Where new vertices of a surface or a ridge go.
 
 #include "adjacency.h"
+#include "measures.h"
 #include "tensor.h"
 
 #include <functional>
@@ -68,14 +69,10 @@ public:
            : dimension == 1 ? on_curve(lies_on, x)
                             : x;
   }
-  /// Distance of the middle of the edge ab from the feature, relative to its length.
-  [[nodiscard]] double deviation(Index dimension, Index lies_on, const Vector<3> &a,
-                                 const Vector<3> &b) const {
-    if (is_flat(dimension, lies_on))
-      return 0;
-    const Vector<3> middle = .5 * (a + b);
-    return (place(dimension, lies_on, middle) - middle).norm() / (b - a).norm();
-  }
+  /// Whether the middle of the edge ab is farther from the feature than this fraction
+  /// of its length, or than the sizes across the feature bear.
+  [[nodiscard]] bool strays(Index dimension, Index lies_on, const Vertex<3> &a,
+                            const Vertex<3> &b, double hausdorff_number) const;
   [[nodiscard]] bool is_flat(Index dimension, Index lies_on) const {
     return dimension == 2   ? patch(lies_on).is_planar
            : dimension == 1 ? curve(lies_on).is_straight

@@ -43,6 +43,9 @@ public:
   /// Splits the longest edge of every cell that is too long, and edges that stray from
   /// their curved surface or ridge; @returns how many.
   std::size_t split(const SplitRule &rule);
+  /// Splits edges of curved surfaces and ridges that stray from them, while the cells
+  /// there are thick enough to let the new vertices pass; @returns how many.
+  std::size_t follow_surfaces();
   /// Edge removals and facet swaps at cells below `quality`, where they improve.
   void swap(double quality);
   /// Collapse, move and metric-Delaunay re-insertion of every vertex.
@@ -83,8 +86,8 @@ private:
   [[nodiscard]] bool is_ring_better(std::size_t apex, double threshold) const;
 
   [[nodiscard]] bool split_curved(Index c);
-  [[nodiscard]] bool is_off_curve(Index curve, const Vector<3> &a,
-                                  const Vector<3> &b) const;
+  [[nodiscard]] bool is_off_curve(Index curve, const Vertex<3> &a,
+                                  const Vertex<3> &b) const;
 
   [[nodiscard]] bool may_collapse(Index v, Index u) const;
   [[nodiscard]] bool follows_curve(Index v, Index u) const;

@@ -72,9 +72,21 @@ std::size_t VolumePasses::split(const SplitRule &rule) {
   return done;
 }
 
-bool VolumePasses::is_off_curve(Index curve, const Vector<3> &a,
-                                const Vector<3> &b) const {
-  return volume_.surface.deviation(1, curve, a, b) > hausdorff_number_;
+bool VolumePasses::is_off_curve(Index curve, const Vertex<3> &a,
+                                const Vertex<3> &b) const {
+  return volume_.surface.strays(1, curve, a, b, hausdorff_number_);
+}
+
+std::size_t VolumePasses::follow_surfaces() {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const std::size_t n = mesh.cells.size();
+  std::size_t done = 0;
+  for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
+    const auto c = static_cast<Index>(k);
+    done += mesh.is_alive(c) && volume_.is_walled(c) && split_curved(c);
+  }
+  counts_.splits += done;
+  return done;
 }
 
 /// Splits an edge of a cell that strays from the curved feature it lies on.
@@ -91,12 +103,12 @@ bool VolumePasses::split_curved(Index c) {
       const Index ridge = volume_.feature(a) <= 1 && volume_.feature(b) <= 1
                               ? volume_.ridges.find(a, b)
                               : none;
-      const double deviation =
-          ridge != none
-              ? volume_.surface.deviation(1, volume_.ridges.at(ridge).curve,
-                                          mesh.vertex(a).x, mesh.vertex(b).x)
-              : volume_.surface.deviation(2, patch, mesh.vertex(a).x, mesh.vertex(b).x);
-      if (deviation > hausdorff_number_ && split_edge(c, a, b, {0, 0}, {1e-4}))
+      const bool strays =
+          ridge != none ? is_off_curve(volume_.ridges.at(ridge).curve, mesh.vertex(a),
+                                       mesh.vertex(b))
+                        : volume_.surface.strays(2, patch, mesh.vertex(a),
+                                                 mesh.vertex(b), hausdorff_number_);
+      if (strays && split_edge(c, a, b, {0, 0}, {1e-4, 1e-4, 0, 0, .1}))
         return true;
     }
   }

@@ -78,8 +78,8 @@ bool VolumePasses::follows_curve(Index v, Index u) const {
     if (other != u)
       beyond = other;
   });
-  return !is_off_curve(volume_.support_of(v), volume_.mesh.vertex(u).x,
-                       volume_.mesh.vertex(beyond).x);
+  return !is_off_curve(volume_.support_of(v), volume_.mesh.vertex(u),
+                       volume_.mesh.vertex(beyond));
 }
 
 /// @pre star_ is the star of v.
@@ -170,6 +170,7 @@ Vector<3> VolumePasses::ideal_step(Index v, const Matrix<3> &L, double &worst,
 /// v goes to x. @pre star_ is the star of v.
 bool VolumePasses::keeps_surfaces(Index v, const Vector<3> &x) const {
   const Triangulation<3> &mesh = volume_.mesh;
+  const Vertex<3> moved{x, mesh.vertex(v).M};
   const Vector<3> &from = mesh.vertex(v).x;
   for (Index c : star_) {
     if (!volume_.is_walled(c))
@@ -190,8 +191,8 @@ bool VolumePasses::keeps_surfaces(Index v, const Vector<3> &x) const {
       if (!(before.dot(after) > cosine * before.norm() * after.norm()))
         return false;
       if (!patch.is_planar && hausdorff_number_ > 0)
-        for (const Vector<3> *end : {&a, &b})
-          if (volume_.surface.deviation(2, k, *end, x) > hausdorff_number_)
+        for (Index end : ends)
+          if (volume_.surface.strays(2, k, mesh.vertex(end), moved, hausdorff_number_))
             return false;
     }
   }
