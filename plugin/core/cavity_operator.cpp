@@ -115,18 +115,47 @@ void CavityOperator::add_surface(HalfFacet h, bool is_boundary) {
   }
 }
 
+/// Whether the new facets are on the side of the old ones, and those of curved surfaces
+/// face them, or do it better than before.
+bool CavityOperator::keeps_sides() const {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const Vector<3> &x = mesh.vertex(apex_).x;
+  Index patch = none;
+  Vector<3> area = Vector<3>::Zero(), normal = area; ///< of the old facets, the surface
+  double least = 0;                                  ///< cosine
+  for (const SurfaceEdge &edge : surface_) {
+    if (edge.patch != patch) {
+      patch = edge.patch;
+      least = volume_.surface.patch(patch).is_planar ? 0 : smallest_facet_cosine;
+      area = Vector<3>::Zero();
+      for (const SurfaceEdge &other : surface_)
+        if (other.patch == patch) // one inside may be seen from either side
+          area += !edge.is_boundary && edge.normal.dot(other.normal) < 0
+                      ? Vector<3>(-other.normal)
+                      : other.normal;
+      normal = volume_.surface.normal(patch, x, area);
+    }
+    const Vector<3> &a = mesh.vertex(edge.ends[0]).x;
+    const Vector<3> facet = (mesh.vertex(edge.ends[1]).x - a).cross(x - a);
+    const double before = normal.dot(edge.normal) / edge.normal.norm(),
+                 after = normal.dot(facet) / facet.norm();
+    const bool is_turned = !edge.is_boundary && before < 0;
+    if (!((is_turned ? -after : after) >
+          std::min(least, edge.is_boundary ? before : std::abs(before))))
+      return false;
+  }
+  return true;
+}
+
 /// The new facets must lie on the side of the old ones, and those of the boundary need
 /// a place where the new cells end.
 bool CavityOperator::add_rim(double hausdorff_number) {
   const Triangulation<3> &mesh = volume_.mesh;
-  const Vector<3> &x = mesh.vertex(apex_).x;
+  if (!keeps_sides())
+    return false;
   for (const SurfaceEdge &edge : surface_) {
-    const Vector<3> &a = mesh.vertex(edge.ends[0]).x;
-    const Vector<3> normal = (mesh.vertex(edge.ends[1]).x - a).cross(x - a);
     const Patch &patch = volume_.surface.patch(edge.patch);
-    const double cosine = patch.is_planar ? 0 : smallest_facet_cosine;
-    if (!(normal.dot(edge.normal) > cosine * normal.norm() * edge.normal.norm()) ||
-        patch.is_frozen)
+    if (patch.is_frozen)
       return false;
     if (!patch.is_planar && hausdorff_number > 0)
       for (Index end : edge.ends)

@@ -10,9 +10,6 @@
 
 namespace anistar {
 
-/// New facets of a curved surface may turn by this much against the old ones.
-inline constexpr double smallest_facet_cosine = .5;
-
 /// What the new cells must be like. The worst of them must reach `floor`, or be better
 /// than the worst old cell by `gain`, whichever asks less: so what is stuck below the
 /// floor can be repaired step by step.
@@ -104,6 +101,7 @@ private:
                              const Acceptance &acceptance);
   [[nodiscard]] bool add_outer(HalfFacet h, double threshold);
   void add_surface(HalfFacet h, bool is_boundary);
+  [[nodiscard]] bool keeps_sides() const;
   [[nodiscard]] bool add_rim(double hausdorff_number);
   [[nodiscard]] bool keeps_vertices(std::span<const Index> cells);
   [[nodiscard]] bool keeps_lengths(double longest);

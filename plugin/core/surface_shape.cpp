@@ -35,6 +35,17 @@ Vector<3> SurfaceShape::on_patch(Index p, const Vector<3> &x) const {
   return projection_ ? projection_(near, here.tag) : near;
 }
 
+Vector<3> SurfaceShape::normal(Index p, const Vector<3> &x,
+                               const Vector<3> &like) const {
+  const Patch &here = patch(p);
+  const CurvedPieces *pieces = here.is_planar ? nullptr : geometry_->surface(here.tag);
+  Vector<3> n = here.is_planar ? here.normal : like;
+  if (pieces)
+    n = pieces->project(x).normal;
+  const double size = n.norm();
+  return n * ((n.dot(like) < 0 ? -1 : 1) / std::max(size, 1e-300));
+}
+
 Vector<3> SurfaceShape::on_curve(Index c, const Vector<3> &x) const {
   const SurfaceCurve &here = curve(c);
   if (here.is_straight)

@@ -33,6 +33,10 @@ struct Patch {
   Vector<3> origin = Vector<3>::Zero(), normal = Vector<3>::Zero(); ///< of its plane
 };
 
+/// Facets of a curved surface make a smaller angle with it than this (its cosine), or
+/// become better.
+inline constexpr double smallest_facet_cosine = .5;
+
 /// A smooth piece of ridge between two corners, or a closed one.
 struct SurfaceCurve {
   Index tag = 0;
@@ -61,6 +65,10 @@ public:
     return curves_[static_cast<std::size_t>(c)];
   }
   [[nodiscard]] Vector<3> on_patch(Index p, const Vector<3> &x) const;
+  /// The unit normal of the surface near x, on the side of `like`; `like` itself where
+  /// the geometry tells none.
+  [[nodiscard]] Vector<3> normal(Index p, const Vector<3> &x,
+                                 const Vector<3> &like) const;
   [[nodiscard]] Vector<3> on_curve(Index c, const Vector<3> &x) const;
   /// The place near x for a vertex on a feature of this dimension.
   [[nodiscard]] Vector<3> place(Index dimension, Index lies_on,

@@ -77,8 +77,10 @@ private:
   [[nodiscard]] std::uint32_t begin(Pass pass);
   [[nodiscard]] bool go_on(std::size_t k, std::size_t n);
 
+  /// Uses star_.
   [[nodiscard]] bool split_edge(Index cell, Index a, Index b, const SplitRule &rule,
                                 const Acceptance &acceptance);
+  [[nodiscard]] bool widen_shell(Index v);
   [[nodiscard]] Index new_vertex(const Vector<3> &x, Index dimension, Index lies_on);
 
   [[nodiscard]] bool swap_cell(Index c);

@@ -1,10 +1,16 @@
 #include "volume_start.h"
 
+#include "smooth_surface.h"
+
 #include <stdexcept>
 #include <string>
 
 namespace anistar {
 namespace {
+
+/// An edge where the mesh turns sharply is a ridge if the geometry has one this near,
+/// relative to its length: a surface may be sampled too badly to tell by itself.
+constexpr double farthest_ridge = .25;
 
 /// Finds the patch of a facet by its vertices.
 class PatchTable {
@@ -88,7 +94,14 @@ void add_cells(Volume &volume, const VolumeInput &input,
 Volume make_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>> metric,
                    const Background<3> &background, const SurfaceInput &geometry,
                    SurfaceProjection projection) {
-  Features features = find_features(input.surface);
+  std::optional<SmoothSurface> smooth; // made when it is asked
+  Features features = find_features(input.surface, [&](Index a, Index b) {
+    if (!smooth)
+      smooth.emplace(geometry);
+    const Vector<3> &x = input.surface.points[static_cast<std::size_t>(a)],
+                    &y = input.surface.points[static_cast<std::size_t>(b)];
+    return smooth->distance_to_ridges(.5 * (x + y)) <= farthest_ridge * (y - x).norm();
+  });
   Volume volume(background,
                 SurfaceShape(std::move(features.patches), std::move(features.curves),
                              geometry, std::move(projection)));

@@ -172,6 +172,8 @@ bool VolumePasses::keeps_surfaces(Index v, const Vector<3> &x) const {
   const Triangulation<3> &mesh = volume_.mesh;
   const Vertex<3> moved{x, mesh.vertex(v).M};
   const Vector<3> &from = mesh.vertex(v).x;
+  Index seen = none;
+  Vector<3> normal = Vector<3>::Zero(); ///< of the surface, at x
   for (Index c : star_) {
     if (!volume_.is_walled(c))
       continue;
@@ -187,8 +189,16 @@ bool VolumePasses::keeps_surfaces(Index v, const Vector<3> &x) const {
       const Vector<3> &a = mesh.vertex(ends[0]).x, &b = mesh.vertex(ends[1]).x;
       const Vector<3> before = (b - a).cross(from - a), after = (b - a).cross(x - a);
       const Patch &patch = volume_.surface.patch(k);
-      const double cosine = patch.is_planar ? 0 : smallest_facet_cosine;
-      if (!(before.dot(after) > cosine * before.norm() * after.norm()))
+      if (k != seen) {
+        seen = k;
+        normal = volume_.surface.normal(k, x, before);
+      }
+      const double side = normal.dot(before) < 0 ? -1 : 1;
+      const double least = patch.is_planar
+                               ? 0
+                               : std::min(smallest_facet_cosine,
+                                          side * normal.dot(before) / before.norm());
+      if (!(side * normal.dot(after) > least * after.norm()))
         return false;
       if (!patch.is_planar && hausdorff_number_ > 0)
         for (Index end : ends)
