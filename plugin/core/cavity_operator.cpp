@@ -22,7 +22,7 @@ bool CavityOperator::replace(std::span<const Index> cells, Index apex,
     return false;
   if (!match() || (has_walls_ && (!constrain() || !separates_regions())))
     return false;
-  if (!surface_.empty() && !keeps_link())
+  if (!surface_.empty() && !(keeps_link() && keeps_surface_links(cells)))
     return false;
   commit(cells);
   return true;
@@ -350,6 +350,65 @@ bool CavityOperator::keeps_link() {
     }
   }
   return true;
+}
+
+/// Surfaces must not come together either: two sheets meet at an edge of the apex that
+/// is no ridge, and as many as before at a ridge. Facets count twice, once per side.
+/// @pre keeps_link has marked the cells around the apex.
+bool CavityOperator::keeps_surface_links(std::span<const Index> cells) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  before_.assign(local_.size(), 0);
+  after_.assign(local_.size(), 0);
+  const auto count = [&](std::vector<int> &counts, Index v, int n) {
+    if (v != none && v != apex_ && volume_.is_marked_vertex(v))
+      counts[static_cast<std::size_t>(local_of_[static_cast<std::size_t>(v)])] += n;
+  };
+  const auto count_facets = [&](std::vector<int> &counts, Index c) {
+    if (!volume_.is_walled(c))
+      return;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const HalfFacet h(c, i);
+      const Facet<3> t = mesh.facet(h);
+      if (mesh.constraint(h) != none && std::find(t.begin(), t.end(), apex_) != t.end())
+        for (Index v : t)
+          count(counts, v, mesh.opposite(h).exists() ? 1 : 2);
+    }
+  };
+  for (Index c : around_) // outside of the cavity: the same before and after
+    count_facets(after_, c);
+  before_ = after_;
+  for (Index c : cells)
+    count_facets(before_, c);
+  for (const Outer &outer : outers_)
+    if (outer.kind == Kind::at_apex && outer.constraint != none)
+      for (Index v : outer.v)
+        count(after_, v, outer.beyond.exists() ? 1 : 2);
+  for (const SurfaceEdge &edge : surface_)
+    for (Index v : edge.ends)
+      count(after_, v, 2);
+  for (std::size_t k = 0; k < local_.size(); ++k) {
+    const Index v = local_[k];
+    if (after_[k] == before_[k] || (after_[k] == 4 && !is_ridge(apex_, v)) ||
+        is_new_ridge(v))
+      continue;
+    if (after_[k] != 0 || is_ridge(apex_, v))
+      return false;
+  }
+  return true;
+}
+
+bool CavityOperator::is_ridge(Index u, Index v) const {
+  return volume_.feature(u) <= 1 && volume_.feature(v) <= 1 &&
+         volume_.ridges.find(u, v) != none;
+}
+
+/// Whether the edge from the apex to v takes the place of one of a ridge.
+bool CavityOperator::is_new_ridge(Index v) const {
+  if (lost_[0] == none || is_ridge(apex_, v))
+    return false;
+  if (lost_[1] == none)
+    return v != lost_[0] && is_ridge(lost_[0], v);
+  return (v == lost_[0] || v == lost_[1]) && is_ridge(lost_[0], lost_[1]);
 }
 
 Index CavityOperator::region_at(const Port &port) const {

@@ -92,6 +92,7 @@ private:
   std::uint32_t epoch_ = 0;
   std::vector<Index> local_, local_of_;
   std::vector<Index> around_;        ///< cells of the apex outside of the cavity
+  std::vector<int> before_, after_;  ///< facets of surfaces at the edges of the apex
   std::vector<std::uint8_t> joined_; ///< local vertices that keep their edge to it
   bool has_walls_ = false;
 
@@ -111,6 +112,9 @@ private:
   [[nodiscard]] bool constrain();
   [[nodiscard]] bool separates_regions() const;
   [[nodiscard]] bool keeps_link();
+  [[nodiscard]] bool keeps_surface_links(std::span<const Index> cells);
+  [[nodiscard]] bool is_ridge(Index u, Index v) const;
+  [[nodiscard]] bool is_new_ridge(Index v) const;
   [[nodiscard]] Index local_index(Index v);
   [[nodiscard]] Index region_at(const Port &port) const;
   [[nodiscard]] HalfFacet half_of(const Port &port) const;

@@ -58,8 +58,7 @@ bool SurfaceShape::strays(Index dimension, Index lies_on, const Vertex<3> &a,
                           const Vertex<3> &b, double hausdorff_number) const {
   if (is_flat(dimension, lies_on))
     return false;
-  const Vector<3> e = b.x - a.x, middle = .5 * (a.x + b.x);
-  const Vector<3> lift = place(dimension, lies_on, middle) - middle;
+  const Vector<3> e = b.x - a.x, lift = this->lift(dimension, lies_on, a.x, b.x);
   if (lift.squaredNorm() > hausdorff_number * hausdorff_number * e.squaredNorm())
     return true;
   const auto square = [&](const Vector<3> &x) {

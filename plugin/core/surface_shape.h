@@ -42,6 +42,7 @@ struct SurfaceCurve {
   Index tag = 0;
   bool is_given = false; ///< it has a tag; else an angle or a change of tags made it
   bool is_straight = false;
+  bool is_frozen = false; ///< bodies only touch along it
   Vector<3> origin = Vector<3>::Zero(), direction = Vector<3>::Zero(); ///< of its line
 };
 
@@ -64,6 +65,7 @@ public:
   [[nodiscard]] const SurfaceCurve &curve(Index c) const {
     return curves_[static_cast<std::size_t>(c)];
   }
+  void freeze(Index c) { curves_[static_cast<std::size_t>(c)].is_frozen = true; }
   [[nodiscard]] Vector<3> on_patch(Index p, const Vector<3> &x) const;
   /// The unit normal of the surface near x, on the side of `like`; `like` itself where
   /// the geometry tells none.
@@ -76,6 +78,12 @@ public:
     return dimension == 2   ? on_patch(lies_on, x)
            : dimension == 1 ? on_curve(lies_on, x)
                             : x;
+  }
+  /// From the middle of the segment ab to the feature.
+  [[nodiscard]] Vector<3> lift(Index dimension, Index lies_on, const Vector<3> &a,
+                               const Vector<3> &b) const {
+    const Vector<3> middle = .5 * (a + b);
+    return place(dimension, lies_on, middle) - middle;
   }
   /// Whether the middle of the edge ab is farther from the feature than this fraction
   /// of its length, or than the sizes across the feature bear.

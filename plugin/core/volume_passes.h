@@ -23,6 +23,7 @@ struct SplitRule {
   double floor;       ///< of the quality
   double closest = 0; ///< nearest a new vertex may come to the others around the edge
   double share = 0;   ///< of the old quality that is enough too (see Acceptance)
+  bool follows_curve = false; ///< split only what is then nearer to its curved feature
 };
 
 struct VertexRule {
@@ -88,6 +89,8 @@ private:
   [[nodiscard]] bool is_ring_better(std::size_t apex, double threshold) const;
 
   [[nodiscard]] bool split_curved(Index c);
+  [[nodiscard]] bool comes_nearer(Index dimension, Index lies_on, const Vector<3> &a,
+                                  const Vector<3> &x, const Vector<3> &b) const;
   [[nodiscard]] bool is_off_curve(Index curve, const Vertex<3> &a,
                                   const Vertex<3> &b) const;
 

@@ -15,6 +15,9 @@ constexpr double nearest_to_end = .375;
 /// than the rule says.
 constexpr double very_long = 3, relaxed = .4;
 
+/// Halves of an edge of a smooth curve leave it by a quarter of what the edge does.
+constexpr double nearer = .4;
+
 /// A facet is hidden from a vertex that would make a cell below this quality with it.
 constexpr double hidden = 1e-5;
 
@@ -92,6 +95,15 @@ std::size_t VolumePasses::follow_surfaces() {
   return done;
 }
 
+/// Whether halves follow a feature better: on what is no smooth feature at all they do
+/// not, and splitting would have no end.
+bool VolumePasses::comes_nearer(Index dimension, Index lies_on, const Vector<3> &a,
+                                const Vector<3> &x, const Vector<3> &b) const {
+  const double whole = volume_.surface.lift(dimension, lies_on, a, b).norm();
+  return volume_.surface.lift(dimension, lies_on, a, x).norm() < nearer * whole &&
+         volume_.surface.lift(dimension, lies_on, x, b).norm() < nearer * whole;
+}
+
 /// Splits the longest edge of a cell that strays from the curved feature it lies on.
 bool VolumePasses::split_curved(Index c) {
   const Triangulation<3> &mesh = volume_.mesh;
@@ -119,7 +131,7 @@ bool VolumePasses::split_curved(Index c) {
       }
     }
   }
-  return a != none && split_edge(c, a, b, {0, 0}, {1e-4, 1e-4, 0, 0, .1});
+  return a != none && split_edge(c, a, b, {0, 0, 0, 0, true}, {1e-4, 1e-4, 0, 0, .1});
 }
 
 /// Collects the cells of the shell in star_, and those that hide their facets from v:
@@ -173,6 +185,8 @@ bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rul
   const Index ridge = volume_.feature(a) <= 1 && volume_.feature(b) <= 1
                           ? volume_.ridges.find(a, b)
                           : none;
+  if (ridge != none && volume_.surface.curve(volume_.ridges.at(ridge).curve).is_frozen)
+    return false;
   if (ridge != none) {
     dimension = 1;
     lies_on = volume_.ridges.at(ridge).curve;
@@ -194,6 +208,10 @@ bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rul
       is_clear = fast_length(volume_.mesh.vertex(shell_.ring[k]),
                              volume_.mesh.vertex(v)) >= rule.closest;
   const bool is_curved = !volume_.surface.is_flat(dimension, lies_on);
+  if (rule.follows_curve && !comes_nearer(dimension, lies_on, p.x, x, q.x)) {
+    volume_.remove_vertex(v);
+    return false;
+  }
   if (!is_clear || !(operator_.replace(shell_.all(), v, {a, b}, acceptance) ||
                      (is_curved && widen_shell(v) &&
                       operator_.replace(star_, v, {a, b}, acceptance)))) {
