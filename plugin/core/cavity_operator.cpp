@@ -22,7 +22,7 @@ bool CavityOperator::replace(std::span<const Index> cells, Index apex,
     return false;
   if (!match() || (has_walls_ && (!constrain() || !separates_regions())))
     return false;
-  if (!surface_.empty() && !keeps_link())
+  if (!surface_.empty() && !(keeps_link() && keeps_surface_links(cells)))
     return false;
   commit(cells);
   return true;
@@ -115,23 +115,52 @@ void CavityOperator::add_surface(HalfFacet h, bool is_boundary) {
   }
 }
 
+/// Whether the new facets are on the side of the old ones, and those of curved surfaces
+/// face them, or do it better than before.
+bool CavityOperator::keeps_sides() const {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const Vector<3> &x = mesh.vertex(apex_).x;
+  Index patch = none;
+  Vector<3> area = Vector<3>::Zero(), normal = area; ///< of the old facets, the surface
+  double least = 0;                                  ///< cosine
+  for (const SurfaceEdge &edge : surface_) {
+    if (edge.patch != patch) {
+      patch = edge.patch;
+      least = volume_.surface.patch(patch).is_planar ? 0 : smallest_facet_cosine;
+      area = Vector<3>::Zero();
+      for (const SurfaceEdge &other : surface_)
+        if (other.patch == patch) // one inside may be seen from either side
+          area += !edge.is_boundary && edge.normal.dot(other.normal) < 0
+                      ? Vector<3>(-other.normal)
+                      : other.normal;
+      normal = volume_.surface.normal(patch, x, area);
+    }
+    const Vector<3> &a = mesh.vertex(edge.ends[0]).x;
+    const Vector<3> facet = (mesh.vertex(edge.ends[1]).x - a).cross(x - a);
+    const double before = normal.dot(edge.normal) / edge.normal.norm(),
+                 after = normal.dot(facet) / facet.norm();
+    const bool is_turned = !edge.is_boundary && before < 0;
+    if (!((is_turned ? -after : after) >
+          std::min(least, edge.is_boundary ? before : std::abs(before))))
+      return false;
+  }
+  return true;
+}
+
 /// The new facets must lie on the side of the old ones, and those of the boundary need
 /// a place where the new cells end.
 bool CavityOperator::add_rim(double hausdorff_number) {
   const Triangulation<3> &mesh = volume_.mesh;
-  const Vector<3> &x = mesh.vertex(apex_).x;
+  if (!keeps_sides())
+    return false;
   for (const SurfaceEdge &edge : surface_) {
-    const Vector<3> &a = mesh.vertex(edge.ends[0]).x;
-    const Vector<3> normal = (mesh.vertex(edge.ends[1]).x - a).cross(x - a);
     const Patch &patch = volume_.surface.patch(edge.patch);
-    const double cosine = patch.is_planar ? 0 : smallest_facet_cosine;
-    if (!(normal.dot(edge.normal) > cosine * normal.norm() * edge.normal.norm()) ||
-        patch.is_frozen)
+    if (patch.is_frozen)
       return false;
     if (!patch.is_planar && hausdorff_number > 0)
       for (Index end : edge.ends)
-        if (volume_.surface.deviation(2, edge.patch, mesh.vertex(end).x, x) >
-            hausdorff_number)
+        if (volume_.surface.strays(2, edge.patch, mesh.vertex(end), mesh.vertex(apex_),
+                                   hausdorff_number))
           return false;
     if (edge.is_boundary)
       outers_.push_back({{edge.ends[0], edge.ends[1], none},
@@ -321,6 +350,65 @@ bool CavityOperator::keeps_link() {
     }
   }
   return true;
+}
+
+/// Surfaces must not come together either: two sheets meet at an edge of the apex that
+/// is no ridge, and as many as before at a ridge. Facets count twice, once per side.
+/// @pre keeps_link has marked the cells around the apex.
+bool CavityOperator::keeps_surface_links(std::span<const Index> cells) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  before_.assign(local_.size(), 0);
+  after_.assign(local_.size(), 0);
+  const auto count = [&](std::vector<int> &counts, Index v, int n) {
+    if (v != none && v != apex_ && volume_.is_marked_vertex(v))
+      counts[static_cast<std::size_t>(local_of_[static_cast<std::size_t>(v)])] += n;
+  };
+  const auto count_facets = [&](std::vector<int> &counts, Index c) {
+    if (!volume_.is_walled(c))
+      return;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const HalfFacet h(c, i);
+      const Facet<3> t = mesh.facet(h);
+      if (mesh.constraint(h) != none && std::find(t.begin(), t.end(), apex_) != t.end())
+        for (Index v : t)
+          count(counts, v, mesh.opposite(h).exists() ? 1 : 2);
+    }
+  };
+  for (Index c : around_) // outside of the cavity: the same before and after
+    count_facets(after_, c);
+  before_ = after_;
+  for (Index c : cells)
+    count_facets(before_, c);
+  for (const Outer &outer : outers_)
+    if (outer.kind == Kind::at_apex && outer.constraint != none)
+      for (Index v : outer.v)
+        count(after_, v, outer.beyond.exists() ? 1 : 2);
+  for (const SurfaceEdge &edge : surface_)
+    for (Index v : edge.ends)
+      count(after_, v, 2);
+  for (std::size_t k = 0; k < local_.size(); ++k) {
+    const Index v = local_[k];
+    if (after_[k] == before_[k] || (after_[k] == 4 && !is_ridge(apex_, v)) ||
+        is_new_ridge(v))
+      continue;
+    if (after_[k] != 0 || is_ridge(apex_, v))
+      return false;
+  }
+  return true;
+}
+
+bool CavityOperator::is_ridge(Index u, Index v) const {
+  return volume_.feature(u) <= 1 && volume_.feature(v) <= 1 &&
+         volume_.ridges.find(u, v) != none;
+}
+
+/// Whether the edge from the apex to v takes the place of one of a ridge.
+bool CavityOperator::is_new_ridge(Index v) const {
+  if (lost_[0] == none || is_ridge(apex_, v))
+    return false;
+  if (lost_[1] == none)
+    return v != lost_[0] && is_ridge(lost_[0], v);
+  return (v == lost_[0] || v == lost_[1]) && is_ridge(lost_[0], lost_[1]);
 }
 
 Index CavityOperator::region_at(const Port &port) const {

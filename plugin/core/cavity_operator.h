@@ -10,9 +10,6 @@
 
 namespace anistar {
 
-/// New facets of a curved surface may turn by this much against the old ones.
-inline constexpr double smallest_facet_cosine = .5;
-
 /// What the new cells must be like. The worst of them must reach `floor`, or be better
 /// than the worst old cell by `gain`, whichever asks less: so what is stuck below the
 /// floor can be repaired step by step.
@@ -95,6 +92,7 @@ private:
   std::uint32_t epoch_ = 0;
   std::vector<Index> local_, local_of_;
   std::vector<Index> around_;        ///< cells of the apex outside of the cavity
+  std::vector<int> before_, after_;  ///< facets of surfaces at the edges of the apex
   std::vector<std::uint8_t> joined_; ///< local vertices that keep their edge to it
   bool has_walls_ = false;
 
@@ -104,6 +102,7 @@ private:
                              const Acceptance &acceptance);
   [[nodiscard]] bool add_outer(HalfFacet h, double threshold);
   void add_surface(HalfFacet h, bool is_boundary);
+  [[nodiscard]] bool keeps_sides() const;
   [[nodiscard]] bool add_rim(double hausdorff_number);
   [[nodiscard]] bool keeps_vertices(std::span<const Index> cells);
   [[nodiscard]] bool keeps_lengths(double longest);
@@ -113,6 +112,9 @@ private:
   [[nodiscard]] bool constrain();
   [[nodiscard]] bool separates_regions() const;
   [[nodiscard]] bool keeps_link();
+  [[nodiscard]] bool keeps_surface_links(std::span<const Index> cells);
+  [[nodiscard]] bool is_ridge(Index u, Index v) const;
+  [[nodiscard]] bool is_new_ridge(Index v) const;
   [[nodiscard]] Index local_index(Index v);
   [[nodiscard]] Index region_at(const Port &port) const;
   [[nodiscard]] HalfFacet half_of(const Port &port) const;

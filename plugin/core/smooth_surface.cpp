@@ -177,6 +177,13 @@ const CurvedPieces *SmoothSurface::find(const Tagged &all, Index tag) {
   return nullptr;
 }
 
+double SmoothSurface::distance_to_ridges(const Vector<3> &x) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto &[tag, pieces] : ridges_)
+    least = std::min(least, (pieces.project(x).x - x).norm());
+  return least;
+}
+
 SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
   const Features features = find_features(geometry);
   jets_ = fit_jets(geometry.points, geometry.facets, features.facet_patch);

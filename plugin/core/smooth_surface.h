@@ -68,6 +68,7 @@ public:
   [[nodiscard]] const CurvedPieces *ridge(bool is_given, Index tag) const {
     return find(ridges_, is_given ? tag : untagged);
   }
+  [[nodiscard]] double distance_to_ridges(const Vector<3> &x) const;
   [[nodiscard]] const Jets &jets() const { return jets_; }
 
 private:

@@ -61,8 +61,10 @@ struct Ridge {
 
 class Classifier {
 public:
-  explicit Classifier(const SurfaceInput &input)
-      : in_(input), cosine_(std::cos(input.ridge_angle * std::numbers::pi / 180)) {}
+  Classifier(const SurfaceInput &input,
+             const std::function<bool(Index, Index)> &has_ridge_at)
+      : in_(input), has_ridge_at_(has_ridge_at),
+        cosine_(std::cos(input.ridge_angle * std::numbers::pi / 180)) {}
 
   Features run() {
     collect_sides();
@@ -76,6 +78,7 @@ public:
 
 private:
   const SurfaceInput &in_;
+  const std::function<bool(Index, Index)> &has_ridge_at_;
   double cosine_;
   Features out_;
   std::vector<Side> sides_;
@@ -120,7 +123,8 @@ private:
       return true;
     const Vector<3> m = normal(group[0].facet), n = normal(group[1].facet);
     const double sign = group[0].is_forward == group[1].is_forward ? -1 : 1;
-    return sign * m.dot(n) <= cosine_ * m.norm() * n.norm();
+    return sign * m.dot(n) <= cosine_ * m.norm() * n.norm() &&
+           (!has_ridge_at_ || has_ridge_at_(group[0].low, group[0].high));
   }
 
   void find_ridges() {
@@ -330,6 +334,9 @@ private:
 
 } // namespace
 
-Features find_features(const SurfaceInput &input) { return Classifier(input).run(); }
+Features find_features(const SurfaceInput &input,
+                       const std::function<bool(Index, Index)> &has_ridge_at) {
+  return Classifier(input, has_ridge_at).run();
+}
 
 } // namespace anistar

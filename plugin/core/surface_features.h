@@ -3,6 +3,8 @@
 
 #include "surface_shape.h"
 
+#include <functional>
+
 namespace anistar {
 
 struct RidgeSegment {
@@ -25,6 +27,9 @@ struct Features {
 /// tags change, and where the surface turns by at least the ridge angle. A point of a
 /// ridge is a corner when it is given, when other than two ridge edges meet there,
 /// where they turn by the ridge angle or differ in tag, and on frozen facets.
-[[nodiscard]] Features find_features(const SurfaceInput &input);
+/// @param has_ridge_at asked of an edge that only an angle makes a ridge, when given
+[[nodiscard]] Features
+find_features(const SurfaceInput &input,
+              const std::function<bool(Index, Index)> &has_ridge_at = {});
 
 } // namespace anistar

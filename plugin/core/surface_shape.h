@@ -2,6 +2,7 @@
 // Where new vertices of a surface or a ridge go.
 
 #include "adjacency.h"
+#include "measures.h"
 #include "tensor.h"
 
 #include <functional>
@@ -32,11 +33,16 @@ struct Patch {
   Vector<3> origin = Vector<3>::Zero(), normal = Vector<3>::Zero(); ///< of its plane
 };
 
+/// Facets of a curved surface make a smaller angle with it than this (its cosine), or
+/// become better.
+inline constexpr double smallest_facet_cosine = .5;
+
 /// A smooth piece of ridge between two corners, or a closed one.
 struct SurfaceCurve {
   Index tag = 0;
   bool is_given = false; ///< it has a tag; else an angle or a change of tags made it
   bool is_straight = false;
+  bool is_frozen = false; ///< bodies only touch along it
   Vector<3> origin = Vector<3>::Zero(), direction = Vector<3>::Zero(); ///< of its line
 };
 
@@ -59,7 +65,12 @@ public:
   [[nodiscard]] const SurfaceCurve &curve(Index c) const {
     return curves_[static_cast<std::size_t>(c)];
   }
+  void freeze(Index c) { curves_[static_cast<std::size_t>(c)].is_frozen = true; }
   [[nodiscard]] Vector<3> on_patch(Index p, const Vector<3> &x) const;
+  /// The unit normal of the surface near x, on the side of `like`; `like` itself where
+  /// the geometry tells none.
+  [[nodiscard]] Vector<3> normal(Index p, const Vector<3> &x,
+                                 const Vector<3> &like) const;
   [[nodiscard]] Vector<3> on_curve(Index c, const Vector<3> &x) const;
   /// The place near x for a vertex on a feature of this dimension.
   [[nodiscard]] Vector<3> place(Index dimension, Index lies_on,
@@ -68,14 +79,16 @@ public:
            : dimension == 1 ? on_curve(lies_on, x)
                             : x;
   }
-  /// Distance of the middle of the edge ab from the feature, relative to its length.
-  [[nodiscard]] double deviation(Index dimension, Index lies_on, const Vector<3> &a,
-                                 const Vector<3> &b) const {
-    if (is_flat(dimension, lies_on))
-      return 0;
+  /// From the middle of the segment ab to the feature.
+  [[nodiscard]] Vector<3> lift(Index dimension, Index lies_on, const Vector<3> &a,
+                               const Vector<3> &b) const {
     const Vector<3> middle = .5 * (a + b);
-    return (place(dimension, lies_on, middle) - middle).norm() / (b - a).norm();
+    return place(dimension, lies_on, middle) - middle;
   }
+  /// Whether the middle of the edge ab is farther from the feature than this fraction
+  /// of its length, or than the sizes across the feature bear.
+  [[nodiscard]] bool strays(Index dimension, Index lies_on, const Vertex<3> &a,
+                            const Vertex<3> &b, double hausdorff_number) const;
   [[nodiscard]] bool is_flat(Index dimension, Index lies_on) const {
     return dimension == 2   ? patch(lies_on).is_planar
            : dimension == 1 ? curve(lies_on).is_straight

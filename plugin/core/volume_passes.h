@@ -23,6 +23,7 @@ struct SplitRule {
   double floor;       ///< of the quality
   double closest = 0; ///< nearest a new vertex may come to the others around the edge
   double share = 0;   ///< of the old quality that is enough too (see Acceptance)
+  bool follows_curve = false; ///< split only what is then nearer to its curved feature
 };
 
 struct VertexRule {
@@ -43,6 +44,9 @@ public:
   /// Splits the longest edge of every cell that is too long, and edges that stray from
   /// their curved surface or ridge; @returns how many.
   std::size_t split(const SplitRule &rule);
+  /// Splits edges of curved surfaces and ridges that stray from them, while the cells
+  /// there are thick enough to let the new vertices pass; @returns how many.
+  std::size_t follow_surfaces();
   /// Edge removals and facet swaps at cells below `quality`, where they improve.
   void swap(double quality);
   /// Collapse, move and metric-Delaunay re-insertion of every vertex.
@@ -74,8 +78,10 @@ private:
   [[nodiscard]] std::uint32_t begin(Pass pass);
   [[nodiscard]] bool go_on(std::size_t k, std::size_t n);
 
+  /// Uses star_.
   [[nodiscard]] bool split_edge(Index cell, Index a, Index b, const SplitRule &rule,
                                 const Acceptance &acceptance);
+  [[nodiscard]] bool widen_shell(Index v);
   [[nodiscard]] Index new_vertex(const Vector<3> &x, Index dimension, Index lies_on);
 
   [[nodiscard]] bool swap_cell(Index c);
@@ -83,8 +89,10 @@ private:
   [[nodiscard]] bool is_ring_better(std::size_t apex, double threshold) const;
 
   [[nodiscard]] bool split_curved(Index c);
-  [[nodiscard]] bool is_off_curve(Index curve, const Vector<3> &a,
-                                  const Vector<3> &b) const;
+  [[nodiscard]] bool comes_nearer(Index dimension, Index lies_on, const Vector<3> &a,
+                                  const Vector<3> &x, const Vector<3> &b) const;
+  [[nodiscard]] bool is_off_curve(Index curve, const Vertex<3> &a,
+                                  const Vertex<3> &b) const;
 
   [[nodiscard]] bool may_collapse(Index v, Index u) const;
   [[nodiscard]] bool follows_curve(Index v, Index u) const;

@@ -9,6 +9,7 @@ namespace {
 /// are stuck, and splitting everything at once makes far too many vertices.
 constexpr double growth_step = 1.5;
 constexpr double longest_edge = 1.5;
+constexpr int max_surface_rounds = 12;
 constexpr int max_growth_rounds = 60, max_converged_rounds = 6;
 /// The next step is taken, and growth ends, when a round splits fewer than these
 /// fractions of the vertices.
@@ -20,6 +21,9 @@ constexpr int n_sweeps = 3;
 
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
 void grow(Volume &volume, VolumePasses &passes) {
+  for (int round = 0; round < max_surface_rounds; ++round)
+    if (passes.follow_surfaces() == 0)
+      break;
   double threshold = std::max(longest_edge, passes.longest_edge() / growth_step);
   std::size_t sorted_at = volume.n_vertices();
   int converged = 0;

@@ -15,6 +15,12 @@ constexpr double nearest_to_end = .375;
 /// than the rule says.
 constexpr double very_long = 3, relaxed = .4;
 
+/// Halves of an edge of a smooth curve leave it by a quarter of what the edge does.
+constexpr double nearer = .4;
+
+/// A facet is hidden from a vertex that would make a cell below this quality with it.
+constexpr double hidden = 1e-5;
+
 } // namespace
 
 std::uint32_t VolumePasses::begin(Pass pass) {
@@ -72,35 +78,88 @@ std::size_t VolumePasses::split(const SplitRule &rule) {
   return done;
 }
 
-bool VolumePasses::is_off_curve(Index curve, const Vector<3> &a,
-                                const Vector<3> &b) const {
-  return volume_.surface.deviation(1, curve, a, b) > hausdorff_number_;
+bool VolumePasses::is_off_curve(Index curve, const Vertex<3> &a,
+                                const Vertex<3> &b) const {
+  return volume_.surface.strays(1, curve, a, b, hausdorff_number_);
 }
 
-/// Splits an edge of a cell that strays from the curved feature it lies on.
+std::size_t VolumePasses::follow_surfaces() {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const std::size_t n = mesh.cells.size();
+  std::size_t done = 0;
+  for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
+    const auto c = static_cast<Index>(k);
+    done += mesh.is_alive(c) && volume_.is_walled(c) && split_curved(c);
+  }
+  counts_.splits += done;
+  return done;
+}
+
+/// Whether halves follow a feature better: on what is no smooth feature at all they do
+/// not, and splitting would have no end.
+bool VolumePasses::comes_nearer(Index dimension, Index lies_on, const Vector<3> &a,
+                                const Vector<3> &x, const Vector<3> &b) const {
+  const double whole = volume_.surface.lift(dimension, lies_on, a, b).norm();
+  return volume_.surface.lift(dimension, lies_on, a, x).norm() < nearer * whole &&
+         volume_.surface.lift(dimension, lies_on, x, b).norm() < nearer * whole;
+}
+
+/// Splits the longest edge of a cell that strays from the curved feature it lies on.
 bool VolumePasses::split_curved(Index c) {
   const Triangulation<3> &mesh = volume_.mesh;
-  const Cell<3> cell = mesh.at(c);
+  Index a = none, b = none;
+  double longest = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const Index patch = mesh.constraint(HalfFacet(c, i));
     if (patch == none)
       continue;
-    const Facet<3> t = facet_of<3>(cell, i);
+    const Facet<3> t = facet_of<3>(mesh.at(c), i);
     for (std::size_t k = 0; k < 3; ++k) {
-      const Index a = t[k], b = t[(k + 1) % 3];
-      const Index ridge = volume_.feature(a) <= 1 && volume_.feature(b) <= 1
-                              ? volume_.ridges.find(a, b)
+      const Index u = t[k], w = t[(k + 1) % 3];
+      const Vertex<3> &p = mesh.vertex(u), &q = mesh.vertex(w);
+      const double square = (q.x - p.x).squaredNorm();
+      if (square <= longest)
+        continue;
+      const Index ridge = volume_.feature(u) <= 1 && volume_.feature(w) <= 1
+                              ? volume_.ridges.find(u, w)
                               : none;
-      const double deviation =
-          ridge != none
-              ? volume_.surface.deviation(1, volume_.ridges.at(ridge).curve,
-                                          mesh.vertex(a).x, mesh.vertex(b).x)
-              : volume_.surface.deviation(2, patch, mesh.vertex(a).x, mesh.vertex(b).x);
-      if (deviation > hausdorff_number_ && split_edge(c, a, b, {0, 0}, {1e-4}))
-        return true;
+      if (ridge != none ? is_off_curve(volume_.ridges.at(ridge).curve, p, q)
+                        : volume_.surface.strays(2, patch, p, q, hausdorff_number_)) {
+        longest = square;
+        a = u;
+        b = w;
+      }
     }
   }
-  return false;
+  return a != none && split_edge(c, a, b, {0, 0, 0, 0, true}, {1e-4, 1e-4, 0, 0, .1});
+}
+
+/// Collects the cells of the shell in star_, and those that hide their facets from v:
+/// on a curved surface v may be off the cells of the edge that it splits.
+bool VolumePasses::widen_shell(Index v) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  star_.assign(shell_.all().begin(), shell_.all().end());
+  volume_.open_cells();
+  for (Index c : star_)
+    volume_.mark_cell(c);
+  for (std::size_t i = 0; i < star_.size(); ++i)
+    for (std::size_t k = 0; k < 4; ++k) {
+      const HalfFacet h(star_[i], k), beyond = mesh.opposite(h);
+      const Facet<3> t = mesh.facet(h);
+      const bool is_cut = std::count_if(t.begin(), t.end(), [&](Index u) {
+                            return u == shell_.a || u == shell_.b;
+                          }) == 2;
+      if (is_cut || (beyond.exists() && volume_.is_marked_cell(beyond.cell())) ||
+          shape_quality(mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]),
+                        mesh.vertex(v)) > hidden)
+        continue;
+      if (!beyond.exists() || mesh.constraint(h) != none ||
+          star_.size() == Shell::capacity || has_ridge(mesh.at(beyond.cell())))
+        return false;
+      volume_.mark_cell(beyond.cell());
+      star_.push_back(beyond.cell());
+    }
+  return star_.size() > shell_.n_cells;
 }
 
 Index VolumePasses::new_vertex(const Vector<3> &x, Index dimension, Index lies_on) {
@@ -126,6 +185,8 @@ bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rul
   const Index ridge = volume_.feature(a) <= 1 && volume_.feature(b) <= 1
                           ? volume_.ridges.find(a, b)
                           : none;
+  if (ridge != none && volume_.surface.curve(volume_.ridges.at(ridge).curve).is_frozen)
+    return false;
   if (ridge != none) {
     dimension = 1;
     lies_on = volume_.ridges.at(ridge).curve;
@@ -146,7 +207,14 @@ bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rul
     for (std::size_t k = 0; k < shell_.n_ring() && is_clear; ++k)
       is_clear = fast_length(volume_.mesh.vertex(shell_.ring[k]),
                              volume_.mesh.vertex(v)) >= rule.closest;
-  if (!is_clear || !operator_.replace(shell_.all(), v, {a, b}, acceptance)) {
+  const bool is_curved = !volume_.surface.is_flat(dimension, lies_on);
+  if (rule.follows_curve && !comes_nearer(dimension, lies_on, p.x, x, q.x)) {
+    volume_.remove_vertex(v);
+    return false;
+  }
+  if (!is_clear || !(operator_.replace(shell_.all(), v, {a, b}, acceptance) ||
+                     (is_curved && widen_shell(v) &&
+                      operator_.replace(star_, v, {a, b}, acceptance)))) {
     volume_.remove_vertex(v);
     return false;
   }

@@ -1,10 +1,16 @@
 #include "volume_start.h"
 
+#include "smooth_surface.h"
+
 #include <stdexcept>
 #include <string>
 
 namespace anistar {
 namespace {
+
+/// An edge where the mesh turns sharply is a ridge if the geometry has one this near,
+/// relative to its length: a surface may be sampled too badly to tell by itself.
+constexpr double farthest_ridge = .25;
 
 /// Finds the patch of a facet by its vertices.
 class PatchTable {
@@ -83,12 +89,53 @@ void add_cells(Volume &volume, const VolumeInput &input,
     throw std::invalid_argument("a facet is not one of a cell");
 }
 
+/// Where bodies only touch, in an edge or a vertex, the cells around it are not joined
+/// by facets: an operation would see one side of it alone. Such places stay as they
+/// are.
+void freeze_touching(Volume &volume) {
+  Triangulation<3> &mesh = volume.mesh;
+  std::vector<std::uint8_t> n_facets(volume.ridges.edges().size(), 0);
+  std::vector<Index> n_cells(mesh.vertices.size(), 0);
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const HalfFacet h(static_cast<Index>(c), i);
+      ++n_cells[static_cast<std::size_t>(mesh.cells[c][i])];
+      if (mesh.opposite(h).exists())
+        continue;
+      const Facet<3> t = mesh.facet(h);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index edge = volume.ridges.find(t[k], t[(k + 1) % 3]);
+        if (edge != none && ++n_facets[static_cast<std::size_t>(edge)] > 2)
+          volume.surface.freeze(volume.ridges.at(edge).curve);
+      }
+    }
+  for (const RidgeEdge &edge : volume.ridges.edges())
+    if (volume.surface.curve(edge.curve).is_frozen)
+      for (Index v : edge.ends)
+        mesh.feature[static_cast<std::size_t>(v)] = Triangulation<3>::corner;
+  std::vector<Index> star;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (mesh.feature[v] == 3 || mesh.vertex_cell[v] == none)
+      continue;
+    star_of(volume, static_cast<Index>(v), star);
+    if (star.size() != static_cast<std::size_t>(n_cells[v]))
+      mesh.feature[v] = Triangulation<3>::corner;
+  }
+}
+
 } // namespace
 
 Volume make_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>> metric,
                    const Background<3> &background, const SurfaceInput &geometry,
                    SurfaceProjection projection) {
-  Features features = find_features(input.surface);
+  std::optional<SmoothSurface> smooth; // made when it is asked
+  Features features = find_features(input.surface, [&](Index a, Index b) {
+    if (!smooth)
+      smooth.emplace(geometry);
+    const Vector<3> &x = input.surface.points[static_cast<std::size_t>(a)],
+                    &y = input.surface.points[static_cast<std::size_t>(b)];
+    return smooth->distance_to_ridges(.5 * (x + y)) <= farthest_ridge * (y - x).norm();
+  });
   Volume volume(background,
                 SurfaceShape(std::move(features.patches), std::move(features.curves),
                              geometry, std::move(projection)));
@@ -105,6 +152,7 @@ Volume make_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>>
       volume.free_vertices.push_back(static_cast<Index>(v));
     volume.mesh.background_cell[v] = cell; // the mesh is its own background
   }
+  freeze_touching(volume);
   renumber(volume);
   return volume;
 }

@@ -78,8 +78,8 @@ bool VolumePasses::follows_curve(Index v, Index u) const {
     if (other != u)
       beyond = other;
   });
-  return !is_off_curve(volume_.support_of(v), volume_.mesh.vertex(u).x,
-                       volume_.mesh.vertex(beyond).x);
+  return !is_off_curve(volume_.support_of(v), volume_.mesh.vertex(u),
+                       volume_.mesh.vertex(beyond));
 }
 
 /// @pre star_ is the star of v.
@@ -170,7 +170,10 @@ Vector<3> VolumePasses::ideal_step(Index v, const Matrix<3> &L, double &worst,
 /// v goes to x. @pre star_ is the star of v.
 bool VolumePasses::keeps_surfaces(Index v, const Vector<3> &x) const {
   const Triangulation<3> &mesh = volume_.mesh;
+  const Vertex<3> moved{x, mesh.vertex(v).M};
   const Vector<3> &from = mesh.vertex(v).x;
+  Index seen = none;
+  Vector<3> normal = Vector<3>::Zero(); ///< of the surface, at x
   for (Index c : star_) {
     if (!volume_.is_walled(c))
       continue;
@@ -186,12 +189,20 @@ bool VolumePasses::keeps_surfaces(Index v, const Vector<3> &x) const {
       const Vector<3> &a = mesh.vertex(ends[0]).x, &b = mesh.vertex(ends[1]).x;
       const Vector<3> before = (b - a).cross(from - a), after = (b - a).cross(x - a);
       const Patch &patch = volume_.surface.patch(k);
-      const double cosine = patch.is_planar ? 0 : smallest_facet_cosine;
-      if (!(before.dot(after) > cosine * before.norm() * after.norm()))
+      if (k != seen) {
+        seen = k;
+        normal = volume_.surface.normal(k, x, before);
+      }
+      const double side = normal.dot(before) < 0 ? -1 : 1;
+      const double least = patch.is_planar
+                               ? 0
+                               : std::min(smallest_facet_cosine,
+                                          side * normal.dot(before) / before.norm());
+      if (!(side * normal.dot(after) > least * after.norm()))
         return false;
       if (!patch.is_planar && hausdorff_number_ > 0)
-        for (const Vector<3> *end : {&a, &b})
-          if (volume_.surface.deviation(2, k, *end, x) > hausdorff_number_)
+        for (Index end : ends)
+          if (volume_.surface.strays(2, k, mesh.vertex(end), moved, hausdorff_number_))
             return false;
     }
   }

@@ -75,7 +75,7 @@ def run_case(case):
     try:
         done = anistar.remesh(case.mesh, case.metric, case.options, geometry=case.geometry)
     except (anistar.MeshingError, ValueError) as error:
-        return _judged_error(str(error))
+        return judged_error(str(error))
     found = Outcome(n_points=done.mesh.n_points, stop=done.report.stop_reason)
     for judge in (_validity, _tags, _topology, _corners, _frozen, _measures):
         found.problem = judge(case, done.mesh)
@@ -88,7 +88,8 @@ def run_case(case):
 PLACES = ("near (", "at (", "tag", "point", "facet", "cell")
 
 
-def _judged_error(message):
+def judged_error(message):
+    """Return what a refusal is worth: it must name a place."""
     names_a_place = any(place in message for place in PLACES)
     problem = "" if names_a_place else f"the message names no place: {message}"
     return Outcome(problem=problem, error=message)

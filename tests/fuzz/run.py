@@ -22,11 +22,11 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 
 
-def outcomes(numbers, *, seed, largest, timeout, deadline=None):
+def outcomes(numbers, *, seed, largest, timeout, dim=2, deadline=None):
     """Yield a dict for every case number, run in workers that are replaced when they die."""
     left = list(numbers)
     while left:
-        worker = _Worker(left, seed=seed, largest=largest)
+        worker = _Worker(left, seed=seed, largest=largest, dim=dim)
         done = 0
         for number in left:
             line = worker.next_line(timeout)
@@ -46,10 +46,10 @@ def outcomes(numbers, *, seed, largest, timeout, deadline=None):
 class _Worker:
     """A process that runs cases in order and prints a line of JSON for each."""
 
-    def __init__(self, numbers, *, seed, largest):
+    def __init__(self, numbers, *, seed, largest, dim):
         command = [sys.executable, str(HERE / "run.py"), "--worker", "--seed", str(seed)]
         self.process = subprocess.Popen(
-            [*command, "--largest", str(largest)],
+            [*command, "--largest", str(largest), "--dim", str(dim)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -84,9 +84,20 @@ class _Worker:
         self.process.stdout.close()
 
 
-def work(seed, largest):
-    """Run the cases whose numbers come on the standard input."""
+def case_functions(dim):
+    """Return what makes a case and what runs it."""
+    if dim == 3:
+        from volume_cases import make_volume_case, run_volume_case
+
+        return make_volume_case, run_volume_case
     from cases import make_case, run_case
+
+    return make_case, run_case
+
+
+def work(seed, largest, dim):
+    """Run the cases whose numbers come on the standard input."""
+    make_case, run_case = case_functions(dim)
 
     for number in map(int, sys.stdin.readline().split("\t")):
         start = time.perf_counter()
@@ -105,18 +116,16 @@ def work(seed, largest):
         say(json.dumps(row))
 
 
-def write_reproducer(folder, seed, number, largest):
+def write_reproducer(folder, seed, number, largest, dim):
     """Write the input of a case as an .npz file."""
-    from cases import make_case
-
+    make_case, _ = case_functions(dim)
     folder.mkdir(parents=True, exist_ok=True)
     case = make_case(seed, number, largest=largest)
     arrays = {}
     for name, mesh in (("geometry", case.geometry), ("mesh", case.mesh)):
-        for key in ("points", "cells", "cell_tags", "facets", "facet_tags", "corners"):
-            arrays[f"{name}_{key}"] = getattr(mesh, key)
+        arrays |= {f"{name}_{key}": value for key, value in mesh.arrays().items() if key != "names"}
     np.savez(
-        folder / f"case-{seed}-{number}.npz",
+        folder / f"case-{dim}d-{seed}-{number}.npz",
         metric=case.metric,
         options=repr(case.options),
         **arrays,
@@ -160,6 +169,7 @@ def main():
     parser.add_argument("--cases", type=int, default=2000)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--dim", type=int, default=2, choices=(2, 3))
     parser.add_argument("--seconds", type=float, help="stop after this time")
     parser.add_argument("--timeout", type=float, default=60.0, help="seconds for one case")
     parser.add_argument("--largest", type=float, default=3000.0, help="largest complexity")
@@ -168,11 +178,10 @@ def main():
     parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.worker:
-        work(options.seed, options.largest)
+        work(options.seed, options.largest, options.dim)
         return 0
     if options.only is not None:
-        from cases import make_case, run_case
-
+        make_case, run_case = case_functions(options.dim)
         say(run_case(make_case(options.seed, options.only, largest=options.largest)))
         return 0
     deadline = None if options.seconds is None else time.monotonic() + options.seconds
@@ -183,13 +192,16 @@ def main():
         seed=options.seed,
         largest=options.largest,
         timeout=options.timeout,
+        dim=options.dim,
         deadline=deadline,
     ):
         rows.append(row)
         if row.get("problem"):
             say(f"case {row['number']}: {row['problem']}")
             if options.reproducers:
-                write_reproducer(options.reproducers, options.seed, row["number"], options.largest)
+                write_reproducer(
+                    options.reproducers, options.seed, row["number"], options.largest, options.dim
+                )
     print_table(rows)
     return int(any(row.get("problem") for row in rows))
 
