@@ -67,8 +67,11 @@ void shape(VolumePasses &passes) {
   }
   passes.swap(.7);
   const bool is_steep = passes.is_metric_steep();
-  for (int k = 0; k < (is_steep ? n_steep_polishes : 1) && !passes.is_stopped(); ++k)
+  for (int k = 0; k < (is_steep ? n_steep_polishes : 1) && !passes.is_stopped(); ++k) {
+    if (k > 0)
+      (void)passes.split({longest_edge, .25, .5});
     passes.polish(is_steep ? 1 : polished_below);
+  }
 }
 
 void extract_facets(const Volume &volume, VolumeResult &out) {
