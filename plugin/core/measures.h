@@ -24,7 +24,7 @@ template <std::size_t d> struct Vertex {
 
 template <std::size_t d>
 [[nodiscard]] Vertex<d> make_vertex(const Vector<d> &x, const SymmetricTensor<d> &M) {
-  return {x, M, 1 / std::sqrt(determinant<d>(M))};
+  return {x, M, 1 / std::sqrt(definite_determinant<d>(M))};
 }
 
 /// Mean of the lengths la, lb of an edge in the metrics of its ends, for a size that

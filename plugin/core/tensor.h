@@ -100,6 +100,26 @@ template <std::size_t d>
            e[3] * (e[1] * e[4] - e[2] * e[3]);
 }
 
+namespace detail {
+/// Determinant of a positive definite tensor with entries e, times e[0], by its Schur
+/// complement. The round-off is relative to the condition number; to its square in
+/// the expansion, which has no digit left when a metric is stretched 1e4 times.
+[[nodiscard]] inline double definite_determinant_times_first(const double *e) {
+  const double p = e[0] * e[2] - e[1] * e[1], q = e[0] * e[4] - e[1] * e[3],
+               r = e[0] * e[5] - e[3] * e[3];
+  return p * r - q * q;
+}
+} // namespace detail
+
+/// @pre M is positive definite.
+template <std::size_t d>
+[[nodiscard]] inline double definite_determinant(const SymmetricTensor<d> &M) {
+  if constexpr (d == 2)
+    return determinant<2>(M);
+  else
+    return detail::definite_determinant_times_first(M.entries.data()) / M.entries[0];
+}
+
 /// Eigenvalues in increasing order, eigenvectors as columns.
 template <std::size_t d> struct Spectrum {
   Vector<d> values;

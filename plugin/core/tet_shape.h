@@ -37,8 +37,23 @@ inline constexpr double squared_flatness = flatness * flatness;
 } // namespace detail
 
 /// The cube of the mean ratio of the cell with edges e, f, g at a corner, in a quarter
-/// of the metric m; not positive when det [e, f, g] is below round-off: a cell of less
-/// is refused, so that no exact arithmetic is needed behind.
+/// of the metric m; not positive when det [e, f, g] is below round-off.
+///
+/// A positive value proves that the exact determinant is positive, so no exact
+/// arithmetic is needed behind it. With u the unit round-off and S the sum of the six
+/// squared edges:
+/// - Every term of v goes through 8 roundings, the differences of coordinates included,
+///   so v is off by 8.01 u times the permanent of |e|, |f|, |g|. That is at most the
+///   product of their 1-norms, 3 sqrt 3 |e| |f| |g|, which is at most S^1.5 because
+///   |e|^2 + |f|^2 + |g|^2 <= S.
+/// - `plain` is S within 64 u: by Cauchy's inequality 4 (ee + ff + gg) - ss is at least a
+///   quarter of what it is computed from.
+/// - So v > 64 u S^1.5, but for those errors and a few u, leaves more than 55 u S^1.5.
+/// - Underflow: v v > 0 needs v > 2^-538, while products that underflow change v by less
+///   than 2^-1070 times an edge; a bound that underflows is below 2^-537.
+/// - Overflow of the bound or of both gives no positive difference.
+/// Cells between that bound and zero are refused: they are flat to whoever computes
+/// with doubles.
 [[nodiscard]] inline double cubed_shape(const double ex, const double ey,
                                         const double ez, const double fx,
                                         const double fy, const double fz,
@@ -56,13 +71,11 @@ inline constexpr double squared_flatness = flatness * flatness;
   const double zz = 4 * (ez * ez + fz * fz + gz * gz) - sz * sz;
   const double squares =
       m[0] * xx + m[2] * yy + m[5] * zz + 2 * (m[1] * xy + m[3] * xz + m[4] * yz);
-  const double det = m[0] * (m[2] * m[5] - m[4] * m[4]) -
-                     m[1] * (m[1] * m[5] - m[4] * m[3]) +
-                     m[3] * (m[1] * m[4] - m[2] * m[3]);
+  const double det_m0 = detail::definite_determinant_times_first(m);
   const double plain = xx + yy + zz; // bounds the square of the longest edge
   const double vv = v * v;
   // 432 makes a regular tetrahedron 1; factored so that nothing over- or underflows
-  const double shape = 432 * (vv / squares) * (det / squares) / squares;
+  const double shape = 432 * (vv / squares) * (det_m0 / (m[0] * squares)) / squares;
   const double solid = vv - detail::squared_flatness * plain * plain * plain;
   return v > 0 && solid > 0 ? shape : -1;
 }

@@ -2,6 +2,7 @@
 // The passes over a volume mesh: split, swap, the vertex pass, and repair.
 
 #include "cavity_operator.h"
+#include "densest_shapes.h"
 #include "monitor.h"
 
 #include <map>
@@ -16,7 +17,7 @@ struct VolumeCounts {
 };
 
 /// Which cells and vertices a pass looks at: those that changed since it last ran.
-enum class Pass { split, swap, vertex };
+enum class Pass { split, swap, vertex, polish };
 
 struct SplitRule {
   double longest;     ///< edges above are split
@@ -53,6 +54,11 @@ public:
   void vertices(const VertexRule &rule);
   /// Swaps, collapses and splits at cells below `quality`, whatever improves.
   void repair(double quality);
+  /// Moves and swaps at cells below `quality` in the measure of the reports.
+  void polish(double quality);
+  /// Whether that measure differs from the one of the other passes almost everywhere:
+  /// the metric varies much within half of the cells.
+  [[nodiscard]] bool is_metric_steep() const;
   /// Makes a pass look at everything the next time.
   void look_everywhere(Pass pass) { last_[static_cast<std::size_t>(pass)] = 0; }
   [[nodiscard]] double longest_edge() const;
@@ -69,11 +75,12 @@ private:
   double hausdorff_number_; ///< of curved surfaces and ridges, relative to an edge
   std::uint64_t seed_;
   VolumeCounts counts_;
-  std::array<std::uint32_t, 3> last_{};
+  std::array<std::uint32_t, 4> last_{};
   bool is_full_ = false; ///< a split had to be left out for want of vertices
   std::vector<Index> star_, ring_;
   Shell shell_;
   StarShapes shapes_;
+  DensestShapes densest_;
 
   [[nodiscard]] std::uint32_t begin(Pass pass);
   [[nodiscard]] bool go_on(std::size_t k, std::size_t n);
@@ -108,6 +115,15 @@ private:
   [[nodiscard]] bool try_move(Index v, const Vector<3> &step, double worst, double sum);
   void reinsert(Index v, double floor);
   [[nodiscard]] bool repair_cell(Index c);
+
+  void polish_vertices(double below);
+  [[nodiscard]] bool polish_vertex(Index v);
+  [[nodiscard]] bool polish_step(Index v, const Vector<3> &step, double floor,
+                                 double &worth);
+  void polish_cells(double below);
+  [[nodiscard]] bool polish_edge(Index c, Index a, Index b);
+  [[nodiscard]] double ring_quality(std::size_t apex, double threshold) const;
+  [[nodiscard]] bool polish_facet(HalfFacet h);
 };
 
 } // namespace anistar

@@ -14,10 +14,16 @@ constexpr int max_growth_rounds = 60, max_converged_rounds = 6;
 /// The next step is taken, and growth ends, when a round splits fewer than these
 /// fractions of the vertices.
 constexpr double step_is_dry = .02, growth_is_dry = .03;
+/// Growth ends as well when a round changes the number of vertices by less than this:
+/// where the metric is steep some edges are split and collapsed for ever.
+constexpr double steady = .01;
 /// The mesh is sorted again when it has grown by this.
 constexpr double growth_between_sorts = 1.6;
 /// Sweeps over the whole mesh at its final size.
 constexpr int n_sweeps = 3;
+/// Where the metric is steep, all is polished, several times; else what is below this.
+constexpr int n_steep_polishes = 3;
+constexpr double polished_below = .5;
 
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
 void grow(Volume &volume, VolumePasses &passes) {
@@ -32,6 +38,7 @@ void grow(Volume &volume, VolumePasses &passes) {
     const bool is_last_step = threshold <= longest_edge;
     if (is_lowered)
       passes.look_everywhere(Pass::split);
+    const auto before = static_cast<double>(volume.n_vertices());
     const std::size_t splits = passes.split({threshold, 1e-4, .45, .5});
     passes.swap(.5);
     passes.vertices({is_last_step ? .6 : .5, std::max(longest_edge, threshold), true});
@@ -43,8 +50,9 @@ void grow(Volume &volume, VolumePasses &passes) {
     passes.repair(.1);
     const double fraction =
         static_cast<double>(splits) / static_cast<double>(volume.n_vertices());
-    if (is_last_step &&
-        (fraction < growth_is_dry || ++converged >= max_converged_rounds))
+    const double change = static_cast<double>(volume.n_vertices()) / before - 1;
+    if (is_last_step && (fraction < growth_is_dry || std::abs(change) < steady ||
+                         ++converged >= max_converged_rounds))
       break;
     is_lowered = !is_last_step && fraction < step_is_dry;
     if (is_lowered)
@@ -62,6 +70,12 @@ void shape(VolumePasses &passes) {
     passes.repair(.3);
   }
   passes.swap(.7);
+  const bool is_steep = passes.is_metric_steep();
+  for (int k = 0; k < (is_steep ? n_steep_polishes : 1) && !passes.is_stopped(); ++k) {
+    if (k > 0)
+      (void)passes.split({longest_edge, .25, .5});
+    passes.polish(is_steep ? 1 : polished_below);
+  }
 }
 
 void extract_facets(const Volume &volume, VolumeResult &out) {

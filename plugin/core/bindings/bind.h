@@ -12,6 +12,7 @@ void bind_locator(nanobind::module_ &module);
 void bind_nearest(nanobind::module_ &module);
 void bind_remesh(nanobind::module_ &module);
 void bind_supermesh(nanobind::module_ &module);
+void bind_tet_shape(nanobind::module_ &module);
 void bind_vertex_graph(nanobind::module_ &module);
 void bind_surface(nanobind::module_ &module);
 void bind_volume_remesh(nanobind::module_ &module);

@@ -1,0 +1,47 @@
+#include "densest_shapes.h"
+
+namespace anistar {
+
+void DensestShapes::add(const Vertex<3> &a, const Vertex<3> &b, const Vertex<3> &c) {
+  for (int k = 0; k < 3; ++k) {
+    a_[k][n_] = a.x[k];
+    b_[k][n_] = c.x[k]; // seen from the vertex the order turns
+    c_[k][n_] = b.x[k];
+  }
+  const Vertex<3> *densest = a.weight <= b.weight ? &a : &b;
+  if (c.weight < densest->weight)
+    densest = &c;
+  weight_[n_] = densest->weight;
+  for (std::size_t k = 0; k < 6; ++k)
+    m_[k][n_] = densest->M.entries[k];
+  ++n_;
+}
+
+void DensestShapes::evaluate(const Vertex<3> &vertex, double poor) {
+  const double x = vertex.x[0], y = vertex.x[1], z = vertex.x[2];
+  const auto &M = vertex.M.entries;
+  for (std::size_t i = 0; i < n_; ++i) {
+    const bool is_denser = vertex.weight < weight_[i];
+    double m[6];
+    for (std::size_t k = 0; k < 6; ++k)
+      m[k] = is_denser ? M[k] : m_[k][i];
+    cubed_[i] = cubed_shape(a_[0][i] - x, a_[1][i] - y, a_[2][i] - z, b_[0][i] - x,
+                            b_[1][i] - y, b_[2][i] - z, c_[0][i] - x, c_[1][i] - y,
+                            c_[2][i] - z, m);
+  }
+  const auto bound = static_cast<float>(poor);
+  float least = 1, sum = 0, missing = 0;
+  for (std::size_t i = 0; i < n_; ++i) {
+    const float root =
+        detail::cube_root(static_cast<float>(std::max(cubed_[i], 1e-30)));
+    const float q = cubed_[i] > 0 ? root : -1.f;
+    least = std::min(least, q);
+    sum += q;
+    missing += std::max(0.f, bound - q);
+  }
+  minimum_ = static_cast<double>(least);
+  sum_ = static_cast<double>(sum);
+  missing_ = static_cast<double>(missing);
+}
+
+} // namespace anistar
