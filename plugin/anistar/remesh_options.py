@@ -96,3 +96,8 @@ class RemeshOptions:
     def time_bound(self) -> float:
         """The wall time, in seconds, after which the call stops."""
         return math.inf if self.max_seconds is None else self.max_seconds
+
+    @property
+    def agreement_mode(self) -> str:
+        """The name of the mode of the agreement phase in the core."""
+        return {True: "on", False: "off", "auto": "auto"}[self.agreement]
