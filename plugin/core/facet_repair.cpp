@@ -13,7 +13,7 @@ constexpr double longest_made = 1.65;
 constexpr double collapsible = .95, splittable = .95;
 /// Places tried for an inserted vertex: the middle of the edge, then random ones within
 /// this metric distance of it.
-constexpr int n_insertions = 3;
+constexpr int n_insertions = 4;
 constexpr double insertion_radius = .25;
 constexpr double least_gain = 1e-7;
 
@@ -75,20 +75,19 @@ bool FacetRepair::replace(std::span<const Index> cells, Index apex,
   return true;
 }
 
-bool FacetRepair::swap(HalfFacet facet) {
+bool FacetRepair::swap(HalfFacet facet, Demand demand) {
   const Triangulation<3> &mesh = volume_.mesh;
   const std::array<Index, 2> both{facet.cell(), mesh.opposite(facet).cell()};
   const Facet<3> t = mesh.facet(facet);
-  if (replace(both, mesh.apex(facet), {none, none}, {agreement_floor, 0},
-              Demand::lower_cost))
+  if (replace(both, mesh.apex(facet), {none, none}, {agreement_floor, 0}, demand))
     return true;
   for (std::size_t k = 0; k < 3; ++k)
-    if (remove_edge(facet.cell(), t[k], t[(k + 1) % 3]))
+    if (remove_edge(facet.cell(), t[k], t[(k + 1) % 3], demand))
       return true;
   return false;
 }
 
-bool FacetRepair::remove_edge(Index c, Index a, Index b) {
+bool FacetRepair::remove_edge(Index c, Index a, Index b, Demand demand) {
   if (!shell_of(volume_.mesh, c, a, b, shell_))
     return false;
   const std::size_t n = shell_.n_ring();
@@ -104,7 +103,7 @@ bool FacetRepair::remove_edge(Index c, Index a, Index b) {
     if (walls.n == 2 && k != walls.position[0] && k != walls.position[1])
       continue; // the new facets of the surface must meet at the apex
     if (replace(shell_.all(), shell_.ring[k], {a, b},
-                {agreement_floor, 0, 0, state_.hausdorff_number}, Demand::lower_cost))
+                {agreement_floor, 0, 0, state_.hausdorff_number}, demand))
       return true;
   }
   return false;
@@ -148,7 +147,15 @@ bool FacetRepair::insert(Index c, Index a, Index b, CounterRandom &random) {
     Index at = volume_.mesh.background_cell[static_cast<std::size_t>(a)];
     const Vertex<3> vertex = volume_.background.vertex(x, at);
     const Index v = volume_.add_vertex(vertex, Triangulation<3>::interior, none, at);
-    if (replace(shell_.all(), v, {a, b}, {agreement_floor, 0}, Demand::fewer_failing))
+    const std::span<const Index> shell = shell_.all();
+    star_.assign(shell.begin(), shell.end());
+    if (k % 2 == 1) {
+      volume_.open_cells();
+      for (Index cell : star_)
+        volume_.mark_cell(cell);
+      grow_cavity(volume_, v, star_);
+    }
+    if (replace(star_, v, {a, b}, {agreement_floor, 0}, Demand::fewer_failing))
       return true;
     volume_.remove_vertex(v);
   }

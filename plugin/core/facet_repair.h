@@ -15,8 +15,11 @@ public:
       : state_(state), volume_(state.volume), operator_(state.volume),
         monitor_(monitor) {}
 
+  /// What the cost must do: go down, or count fewer facets.
+  enum class Demand { lower_cost, fewer_failing };
+
   /// The facet becomes an edge, or one of its edges is removed.
-  bool swap(HalfFacet facet);
+  bool swap(HalfFacet facet, Demand demand);
   /// The star of v grows to its Delaunay star in the metric of v.
   bool reinsert(Index v);
   /// One of the five vertices of the facet is collapsed, or an edge between them split,
@@ -24,9 +27,6 @@ public:
   bool collapse_or_insert(HalfFacet facet, CounterRandom &random);
 
 private:
-  /// What the cost must do: go down, or count fewer facets.
-  enum class Demand { lower_cost, fewer_failing };
-
   AgreementState &state_;
   Volume &volume_;
   CavityOperator operator_;
@@ -40,7 +40,7 @@ private:
   [[nodiscard]] bool is_worth_it(std::span<const Index> cells, Demand demand);
   [[nodiscard]] AgreementCost cost_of(std::span<const Index> cells);
   [[nodiscard]] AgreementCost cost_of_proposal() const;
-  [[nodiscard]] bool remove_edge(Index c, Index a, Index b);
+  [[nodiscard]] bool remove_edge(Index c, Index a, Index b, Demand demand);
   [[nodiscard]] bool collapse(Index v, Index u);
   [[nodiscard]] bool insert(Index c, Index a, Index b, CounterRandom &random);
 };

@@ -8,14 +8,19 @@ namespace anistar {
 namespace {
 
 constexpr int max_rounds = 60;
-/// Rounds in which the fewest failing facets may stay as many, to be worth going on.
-constexpr int patience = 6;
-/// What counts as fewer.
+/// Rounds that may pass without clearly fewer failing facets; more when only a few are
+/// left, for a round costs nothing then.
+constexpr int patience = 6, patience_with_few = 25;
+constexpr std::size_t few = 100;
 constexpr double least_reduction = .05;
 /// The radius of the trial places, round by round.
 constexpr double radii[] = {.3, .15, .07};
 /// Every so many rounds collapses and insertions are tried.
 constexpr int repair_period = 5;
+/// From this round on, in every second one, vertices at a facet that resists wander, by
+/// this much.
+constexpr int first_wandering = 3;
+constexpr double wandering_radius = .2;
 constexpr int max_polish_sweeps = 2;
 
 class VolumeAgreement {
@@ -105,7 +110,7 @@ private:
         fewest = failing_.size();
         since = 0;
       }
-      if (since >= patience)
+      if (since >= (failing_.size() <= few ? patience_with_few : patience))
         return AgreementStop::stalled;
     }
     return failing_.empty() ? AgreementStop::agreed : AgreementStop::rounds;
@@ -124,13 +129,16 @@ private:
       if (is_repairing)
         counts_.repairs += repair_.collapse_or_insert(h, random);
       else
-        mend(h, radii[round % 3], random);
+        mend(h, round, random);
     }
     return true;
   }
 
-  void mend(HalfFacet h, double radius, CounterRandom &random) {
-    if (repair_.swap(h)) {
+  void mend(HalfFacet h, int round, CounterRandom &random) {
+    const double radius = radii[round % 3];
+    // a swap that only exchanges failing facets could be taken back for ever
+    if (repair_.swap(h, round % 2 == 0 ? FacetRepair::Demand::lower_cost
+                                       : FacetRepair::Demand::fewer_failing)) {
       ++counts_.swaps;
       return;
     }
@@ -145,6 +153,8 @@ private:
       if (!still_fails(h))
         return;
     }
+    if (round >= first_wandering && round % 2 == 1)
+      counts_.moves += relocation_.wander(vertices[first], wandering_radius, random);
   }
 
   /// Takes back what agreement cost in shape, where it changed something.

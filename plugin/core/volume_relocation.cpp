@@ -15,6 +15,10 @@ constexpr double short_weight = 10, long_weight = 4;
 /// A trial must be better than the best by this much.
 constexpr double least_gain = 1e-9;
 
+/// Random moves: how many are tried, and what edges may cost then.
+constexpr int n_wandering = 4;
+constexpr double most_wandering_penalty = .2;
+
 /// Polishing steps, as fractions of the step to the ideal place, and what they must
 /// gain in the mean quality of the star. Shorter steps are not worth a trial.
 constexpr double polish_fractions[] = {1, .5, .25};
@@ -198,6 +202,28 @@ bool VolumeRelocation::relocate(Index v, double radius, CounterRandom &random) {
     return false;
   commit(best, best_cell);
   return true;
+}
+
+bool VolumeRelocation::wander(Index v, double radius, CounterRandom &random) {
+  if (!gather(v))
+    return false;
+  const Score before = here();
+  const Matrix<3> L = lower_factor<3>(trial_.M);
+  const double floor = std::min(before.quality_min, agreement_floor) - least_gain;
+  const Vector<3> start = trial_.x;
+  for (int k = 0; k < n_wandering; ++k) {
+    Index at = volume_.mesh.background_cell[static_cast<std::size_t>(v)];
+    Score score;
+    if (!place(start + in_space(L, radius * random_in_ball(random)), at) ||
+        !evaluate(floor, std::numeric_limits<double>::infinity(), score) ||
+        score.cost.failing > before.cost.failing + 1 ||
+        score.lengths > std::max(before.lengths, most_wandering_penalty))
+      continue;
+    keep_trial();
+    commit(trial_, at);
+    return true;
+  }
+  return false;
 }
 
 /// The mean of the places where each facet of the star would have its ideal apex,

@@ -35,6 +35,8 @@ public:
   /// Random places within this metric distance; @returns whether one is better by
   /// AgreementCost and lengths.
   bool relocate(Index v, double radius, CounterRandom &random);
+  /// A random place where no more than one more facet fails, to leave a local minimum.
+  bool wander(Index v, double radius, CounterRandom &random);
   /// A step towards better shapes at which no more facets fail, and not by more.
   bool polish(Index v);
 

@@ -308,7 +308,7 @@ bool has_ridge(const Volume &volume, const Cell<3> &cell) {
 void grow_cavity(Volume &volume, Index v, std::vector<Index> &star) {
   const Triangulation<3> &mesh = volume.mesh;
   const Vertex<3> &here = mesh.vertex(v);
-  const std::size_t n_star = star.size();
+  const std::size_t n_star = mesh.is_used(v) ? star.size() : 0;
   for (std::size_t i = 0; i < star.size(); ++i) {
     const Index c = star[i];
     for (std::size_t k = 0; k < 4; ++k) {
