@@ -12,10 +12,10 @@ constexpr std::uint32_t port_bits = 13;
 
 bool CavityOperator::replace(std::span<const Index> cells, Index apex,
                              std::array<Index, 2> lost, const Acceptance &acceptance) {
-  if (!propose(cells, apex, lost, acceptance))
-    return false;
-  commit(cells);
-  return true;
+  const bool is_valid = propose(cells, apex, lost, acceptance);
+  if (is_valid)
+    commit(cells);
+  return is_valid;
 }
 
 bool CavityOperator::propose(std::span<const Index> cells, Index apex,

@@ -21,7 +21,16 @@ constexpr int repair_period = 5;
 /// this much.
 constexpr int first_wandering = 3;
 constexpr double wandering_radius = .2;
+/// A bound on the trial places; the metrics that could be certified, but for a few
+/// cells, took a third of it.
+constexpr std::size_t trials_per_cell = 20;
+/// Re-insertion finds most of what it can in the first round: it is tried every so
+/// many.
+constexpr int reinsertion_period = 3;
 constexpr int max_polish_sweeps = 2;
+/// The monitor looks at the clock and at the user after so many facets, a few
+/// milliseconds.
+constexpr std::size_t calls_between_looks = 64;
 
 class VolumeAgreement {
 public:
@@ -52,6 +61,7 @@ private:
   FacetRepair repair_;
   std::vector<HalfFacet> failing_; ///< each from its first cell, sorted
   VolumeAgreementCounts counts_;
+  std::size_t calls_ = 0;
 
   [[nodiscard]] bool go_on(double fraction) { return monitor_.keep_going(0, fraction); }
   [[nodiscard]] bool still_fails(HalfFacet h) {
@@ -104,6 +114,8 @@ private:
       update_list();
       if (!is_going)
         return AgreementStop::interrupted;
+      if (relocation_.trials() > trials_per_cell * mesh_.n_cells())
+        return AgreementStop::trials;
       ++since;
       if (static_cast<double>(failing_.size()) <
           (1 - least_reduction) * static_cast<double>(fewest)) {
@@ -148,7 +160,8 @@ private:
     const auto first = static_cast<std::size_t>(5 * random.uniform());
     for (std::size_t k = 0; k < 5; ++k) {
       const Index v = vertices[(first + k) % 5];
-      counts_.reinsertions += repair_.reinsert(v);
+      if (round % reinsertion_period == 0)
+        counts_.reinsertions += repair_.reinsert(v);
       counts_.moves += relocation_.relocate(v, radius, random);
       if (!still_fails(h))
         return;

@@ -10,7 +10,7 @@
 namespace anistar {
 
 /// Why agreement ended.
-enum class AgreementStop { agreed, stalled, rounds, interrupted };
+enum class AgreementStop { agreed, stalled, rounds, trials, interrupted };
 
 [[nodiscard]] inline const char *name_of(AgreementStop stop) {
   switch (stop) {
@@ -19,7 +19,9 @@ enum class AgreementStop { agreed, stalled, rounds, interrupted };
   case AgreementStop::stalled:
     return "stalled";
   case AgreementStop::rounds:
-    return "rounds";
+    return "too many rounds";
+  case AgreementStop::trials:
+    return "too many trials";
   case AgreementStop::interrupted:
     return "interrupted";
   }
