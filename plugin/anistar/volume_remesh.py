@@ -58,6 +58,7 @@ def remesh_volume(
         None if project is None else pointwise(project, scale),
         options.callback,
     )
+    raw["simplex_ok"] = raw["star_ok"] = None
     rules = ("size", "radius_edge", "sliver", "inconsistency", "boundary", "rounds")
     raw["consistency"] = {**dict.fromkeys(rules, 0), "stop_reason": ""}
     return raw

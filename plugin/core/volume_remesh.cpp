@@ -25,11 +25,6 @@ constexpr int n_sweeps = 3;
 /// Agreement certified at least 99.5 % of the cells on every metric tried whose ln
 /// gamma stays below the first on 90 % of the edges and below the second on 99 %.
 constexpr double largest_agreeing_p90 = .3, largest_agreeing_p99 = .6;
-/// A mesh of which more than this part of the vertices is new or gone has not found its
-/// size: the metric was not seen at those places, and another call will follow that
-/// undoes what agreement would reach.
-constexpr double largest_unsettled = .1;
-
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
 void grow(Volume &volume, VolumePasses &passes) {
   double threshold = std::max(longest_edge, passes.longest_edge() / growth_step);
@@ -80,14 +75,15 @@ std::string quotient(double value, double bound) {
 
 /// Why there will be no agreement; empty when there will be.
 std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
-                           const VolumeCounts &counts, const VolumeSettings &settings) {
+                           const VolumeSettings &settings) {
   if (settings.agreement == AgreementMode::off)
     return "off";
   if (monitor.reason() != StopReason::finished)
     // the cells of a mesh that is not refined can reach across the whole domain
     return std::string("skipped: stopped by ") + name_of(monitor.reason());
-  if (settings.agreement == AgreementMode::on)
-    return "";
+  // it takes as long as all the rest, for a property that only some ask for
+  if (settings.agreement == AgreementMode::when_possible)
+    return "skipped: not asked for, and in 3D it takes as long as the remeshing";
   const DistortionQuantiles gamma =
       distortion_quantiles(volume.mesh.vertices, volume.mesh.cells, settings.threads);
   const std::string too_fast = "skipped: the metric varies too fast, ln gamma ";
@@ -95,20 +91,13 @@ std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
     return too_fast + "p90 " + quotient(gamma.p90, largest_agreeing_p90);
   if (gamma.p99 > largest_agreeing_p99)
     return too_fast + "p99 " + quotient(gamma.p99, largest_agreeing_p99);
-  const double unsettled = static_cast<double>(counts.splits + counts.collapses) /
-                           static_cast<double>(volume.n_vertices());
-  if (unsettled > largest_unsettled)
-    return "skipped: the mesh has not found its size, part of the vertices that came "
-           "or "
-           "went " +
-           quotient(unsettled, largest_unsettled);
   return "";
 }
 
 /// Phase 4, as far as the metric and the settings let it. @pre the mesh was renumbered.
-void agree(Volume &volume, Monitor &monitor, const VolumeCounts &counts,
-           const VolumeSettings &settings, VolumeResult &out) {
-  out.agreement = reason_to_skip(volume, monitor, counts, settings);
+void agree(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
+           VolumeResult &out) {
+  out.agreement = reason_to_skip(volume, monitor, settings);
   if (!out.agreement.empty())
     return;
   const VolumeAgreementCounts agreed =
@@ -174,7 +163,7 @@ VolumeResult remesh_volume(const VolumeInput &input,
   shape(passes);
   renumber(volume);
   watch.phase("agreement");
-  agree(volume, monitor, passes.counts(), settings, out);
+  agree(volume, monitor, settings, out);
 
   watch.phase("report");
   extract_facets(volume, out);

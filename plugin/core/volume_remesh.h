@@ -28,9 +28,7 @@ struct VolumeResult {
   std::vector<Index> edge_tags;
   Statistics statistics;
   DistortionQuantiles distortion;
-  bool was_checked = false;           ///< the certified fractions are known
-  double simplex_ok = 0, star_ok = 0; ///< certified fractions
-  std::string agreement;              ///< done, or why not
+  std::string agreement; ///< done, or why not
   std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase
   StopReason reason = StopReason::finished;

@@ -72,7 +72,6 @@ nb::dict remesh3(const Array2<double> &points, const Array2<Index> &cells,
   result["edges"] = rows<Index, 2>(out.edges);
   result["edge_tags"] = owned(std::move(out.edge_tags), {out.edges.size()});
   result["agreement"] = out.agreement;
-  put_certified(result, out.was_checked, out.simplex_ok, out.star_ok);
   result["statistics"] = as_dict(out.statistics);
   result["distortion"] = as_dict(out.distortion);
   result["counts"] = out.counts;
