@@ -146,7 +146,7 @@ def _call_core(
             options.hausdorff_number,
             options.vertex_bound,
             options.time_bound,
-            {True: "on", False: "off", "auto": "auto"}[options.agreement],
+            options.agreement_mode,
             {True: "on", False: "off", "pure": "pure"}[options.until_consistent],
             parameters,
             options.seed,

@@ -32,7 +32,9 @@ class RemeshOptions:
     agreement : bool or "auto"
         Move vertices until the stars of the mesh agree, so that `certify` finds every star
         Delaunay in its own metric. "auto" does so when the metric varies slowly enough from
-        vertex to vertex for that to succeed; ``report.agreement`` says what was decided.
+        vertex to vertex for that to succeed; ``report.agreement`` says what was decided. In 3D
+        the phase takes about as long as the remeshing itself: "auto" leaves it out, and True
+        runs it where the metric varies slowly enough.
     until_consistent : bool or "pure"
         After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
         star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.
@@ -96,3 +98,8 @@ class RemeshOptions:
     def time_bound(self) -> float:
         """The wall time, in seconds, after which the call stops."""
         return math.inf if self.max_seconds is None else self.max_seconds
+
+    @property
+    def agreement_mode(self) -> str:
+        """The name of the mode of the agreement phase in the core."""
+        return {True: "on", False: "off", "auto": "auto"}[self.agreement]

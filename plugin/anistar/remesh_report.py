@@ -45,20 +45,23 @@ class RemeshReport:
         ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
         ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
     agreement : str
-        ``done``, ``off``, or ``skipped:`` and why.
+        ``done``, ``off``, or ``skipped:`` and why; in 3D also what was left when it stalled.
     consistency : dict
         Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
         ``inconsistency``, ``boundary``), ``rounds`` and ``stop_reason``.
     simplex_ok, star_ok : float or None
         Certified fractions of the cells and of the stars (see `certify`); None when the
-        agreement phase was off or a budget had stopped the run.
+        agreement phase was off or a budget had stopped the run, and in 3D, where the
+        certificate takes longer than a pass: ask `certify`.
     distortion : dict of str to float
         Quantiles of ln gamma, the distortion of the metric along the edges.
     tags : tuple of TagMeasure
         Measure of every facet and region tag against the geometry.
     counts : dict of str to float
         Operations made; ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
-        legs have equal lengths, and those without a common one.
+        legs have equal lengths, and those without a common one. ``disagreeing_before`` and
+        ``disagreeing_after`` count the facets about which the metrics of the vertices of their
+        two cells disagree, around the agreement phase.
     seconds : dict of str to float
         Wall time of each phase.
     """

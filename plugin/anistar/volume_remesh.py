@@ -12,8 +12,6 @@ from .mesh import Mesh
 from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 
-NOT_YET = "skipped: there is no agreement phase in 3D yet"
-
 
 def remesh_volume(
     mesh: Mesh,
@@ -32,8 +30,8 @@ def remesh_volume(
     ValueError
         If an option asks for what exists in 2D only.
     """
-    if options.agreement is True or options.until_consistent:
-        raise ValueError("agreement=True and until_consistent exist in 2D only")
+    if options.until_consistent:
+        raise ValueError("until_consistent exists in 2D only")
     raw: dict[str, Any] = _core.remesh3(
         mesh.points * scale,
         mesh.cells,
@@ -54,12 +52,12 @@ def remesh_volume(
         options.hausdorff_number,
         options.vertex_bound,
         options.time_bound,
+        options.agreement_mode,
         options.seed,
         options.threads,
         None if project is None else pointwise(project, scale),
         options.callback,
     )
-    raw["agreement"] = NOT_YET if options.agreement else "off"
     raw["simplex_ok"] = raw["star_ok"] = None
     rules = ("size", "radius_edge", "sliver", "inconsistency", "boundary", "rounds")
     raw["consistency"] = {**dict.fromkeys(rules, 0), "stop_reason": ""}

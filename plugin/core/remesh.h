@@ -1,6 +1,7 @@
 #pragma once
 // remesh: a mesh, a metric field, and a geometry in; a mesh with unit edges out.
 
+#include "agreement_mode.h"
 #include "consistency.h"
 #include "curves.h"
 #include "monitor.h"
@@ -11,10 +12,6 @@
 #include <string>
 
 namespace anistar {
-
-/// Whether vertices are moved until the stars agree. `when_possible` asks the metric:
-/// it must not vary too fast from vertex to vertex.
-enum class AgreementMode { off, when_possible, on };
 
 /// Whether points are inserted until every star agrees; `pure` starts from the boundary
 /// alone and applies nothing but the rules of the paper.

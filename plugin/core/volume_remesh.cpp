@@ -1,6 +1,10 @@
 #include "volume_remesh.h"
 
 #include "stopwatch.h"
+#include "volume_agreement.h"
+
+#include <iomanip>
+#include <sstream>
 
 namespace anistar {
 namespace {
@@ -25,6 +29,9 @@ constexpr int n_sweeps = 3;
 constexpr int n_steep_polishes = 3;
 constexpr double polished_below = .5;
 
+/// Agreement certified at least 99.5 % of the cells on every metric tried whose ln
+/// gamma stays below the first on 90 % of the edges and below the second on 99 %.
+constexpr double largest_agreeing_p90 = .3, largest_agreeing_p99 = .6;
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
 void grow(Volume &volume, VolumePasses &passes) {
   for (int round = 0; round < max_surface_rounds; ++round)
@@ -78,6 +85,59 @@ void shape(VolumePasses &passes) {
   }
 }
 
+std::string quotient(double value, double bound) {
+  std::ostringstream text;
+  text << std::setprecision(2) << value << " > " << bound;
+  return text.str();
+}
+
+/// Why there will be no agreement; empty when there will be.
+std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
+                           const VolumeSettings &settings) {
+  if (settings.agreement == AgreementMode::off)
+    return "off";
+  if (monitor.reason() != StopReason::finished)
+    // the cells of a mesh that is not refined can reach across the whole domain
+    return std::string("skipped: stopped by ") + name_of(monitor.reason());
+  // it takes as long as all the rest, for a property that only some ask for
+  if (settings.agreement == AgreementMode::when_possible)
+    return "skipped: not asked for, and in 3D it takes as long as the remeshing";
+  const DistortionQuantiles gamma =
+      distortion_quantiles(volume.mesh.vertices, volume.mesh.cells, settings.threads);
+  const std::string too_fast = "skipped: the metric varies too fast, ln gamma ";
+  if (gamma.p90 > largest_agreeing_p90)
+    return too_fast + "p90 " + quotient(gamma.p90, largest_agreeing_p90);
+  if (gamma.p99 > largest_agreeing_p99)
+    return too_fast + "p99 " + quotient(gamma.p99, largest_agreeing_p99);
+  return "";
+}
+
+/// Phase 4, as far as the metric and the settings let it. @pre the mesh was renumbered.
+void agree(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
+           VolumeResult &out) {
+  out.agreement = reason_to_skip(volume, monitor, settings);
+  if (!out.agreement.empty())
+    return;
+  const VolumeAgreementCounts agreed =
+      agree_volume(volume, monitor, settings.hausdorff_number, settings.seed);
+  renumber(volume);
+  out.agreement = "done";
+  if (agreed.facets_after > 0)
+    out.agreement += std::string(", ") + name_of(agreed.stop) + " with " +
+                     std::to_string(agreed.facets_after) + " facets left";
+  for (const auto &[name, value] :
+       {std::pair{"disagreeing_before", agreed.facets_before},
+        {"disagreeing_after", agreed.facets_after},
+        {"trials", agreed.trials},
+        {"relocations", agreed.moves},
+        {"agreement_swaps", agreed.swaps},
+        {"agreement_insertions", agreed.reinsertions},
+        {"agreement_repairs", agreed.repairs},
+        {"polishes", agreed.polishes},
+        {"agreement_rounds", static_cast<std::size_t>(agreed.rounds)}})
+    out.counts[name] = static_cast<double>(value);
+}
+
 void extract_facets(const Volume &volume, VolumeResult &out) {
   const Triangulation<3> &mesh = volume.mesh;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -120,6 +180,8 @@ VolumeResult remesh_volume(const VolumeInput &input,
   watch.phase("shape");
   shape(passes);
   renumber(volume);
+  watch.phase("agreement");
+  agree(volume, monitor, settings, out);
 
   watch.phase("report");
   extract_facets(volume, out);

@@ -1,6 +1,7 @@
 #pragma once
 // remesh in 3D: a mesh, a metric field and a geometry in; a mesh with unit edges out.
 
+#include "agreement_mode.h"
 #include "statistics.h"
 #include "volume_passes.h"
 #include "volume_start.h"
@@ -11,6 +12,7 @@ struct VolumeSettings {
   double hausdorff_number = .1; ///< of an edge, relative to its length
   std::size_t max_vertices = static_cast<std::size_t>(-1);
   double max_seconds = std::numeric_limits<double>::infinity();
+  AgreementMode agreement = AgreementMode::when_possible;
   std::uint64_t seed = 0;
   int threads = 1; ///< for the figures of the report; the passes are serial
 };
@@ -26,6 +28,7 @@ struct VolumeResult {
   std::vector<Index> edge_tags;
   Statistics statistics;
   DistortionQuantiles distortion;
+  std::string agreement; ///< done, or why not
   std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase
   StopReason reason = StopReason::finished;

@@ -56,16 +56,6 @@ ConsistencyMode consistency_mode(const std::string &name) {
   return out;
 }
 
-AgreementMode agreement_mode(const std::string &name) {
-  if (name == "off")
-    return AgreementMode::off;
-  if (name == "auto")
-    return AgreementMode::when_possible;
-  if (name == "on")
-    return AgreementMode::on;
-  throw std::invalid_argument("unknown agreement mode '" + name + "'");
-}
-
 nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
                  const Array3<double> &metric, const Array2<double> &geometry_points,
                  const Array2<Index> &geometry_cells,

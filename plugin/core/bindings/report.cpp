@@ -32,6 +32,16 @@ nb::dict as_dict(const DistortionQuantiles &quantiles) {
   return out;
 }
 
+AgreementMode agreement_mode(const std::string &name) {
+  if (name == "off")
+    return AgreementMode::off;
+  if (name == "auto")
+    return AgreementMode::when_possible;
+  if (name == "on")
+    return AgreementMode::on;
+  throw std::invalid_argument("unknown agreement mode '" + name + "'");
+}
+
 Monitor::Progress progress_of(nb::handle callback) {
   return [callback](const std::string &phase, double fraction) {
     nb::gil_scoped_acquire acquire;
