@@ -9,6 +9,7 @@ from pairs import centroids, halves, jittered, with_regions
 
 from anistar import Field, TransferOptions, transfer
 from anistar.mesh import Mesh
+from anistar.transfer import projection
 from anistar.validation import validate
 
 
@@ -19,6 +20,11 @@ def in_strips(n):
     mesh = Mesh(points=base.points, cells=base.cells, cell_tags=tags)
     assert validate(mesh) == []
     return mesh
+
+
+def bent(mesh):
+    """The mesh with its points moved along vertical lines."""
+    return Mesh(points=mesh.points ** [1.0, 1.3], cells=mesh.cells, cell_tags=mesh.cell_tags)
 
 
 def bulging(n, bulge):
@@ -40,15 +46,41 @@ def bulging(n, bulge):
 
 def test_regions_without_inner_points_keep_the_total_of_a_bounded_transfer():
     source = in_strips(4)
-    target = Mesh(
-        points=source.points ** [1.0, 1.3], cells=source.cells, cell_tags=source.cell_tags
-    )
+    target = bent(source)
     u = (np.random.default_rng(0).random(source.n_points) > 0.7).astype(float)
     done = transfer(source, {"u": u}, target, method="bounded")
     before, after = done.report.changes["u"].integral
     assert abs(after[0] - before[0]) < 1e-14
     assert done.fields["u"].min() >= 0
     assert done.fields["u"].max() <= 1
+
+
+def in_blocks(n, k):
+    """The unit square in k by k square regions."""
+    base = square(n)
+    column, row = (k * centroids(base)).astype(int).T
+    return Mesh(points=base.points, cells=base.cells, cell_tags=column * k + row)
+
+
+def test_hundreds_of_regions_each_keep_their_integral():
+    source, target = in_blocks(32, 16), in_blocks(48, 16)
+    assert projection.LARGEST_DENSE < 16**2
+    u = np.random.default_rng(0).random(source.n_points)
+    change = transfer(source, {"u": u}, target, method="conservative").report.changes["u"]
+    assert max(abs(row[0]) for row in change.defects.values()) < 1e-15
+
+
+@pytest.mark.parametrize(
+    ("source", "target"),
+    [(in_blocks(6, 3), in_blocks(9, 3)), (in_strips(6), bent(in_strips(6)))],
+    ids=["regular", "singular"],
+)
+def test_an_iteration_corrects_the_regions_as_their_inverse_does(source, target, monkeypatch):
+    u = np.random.default_rng(0).random(source.n_points)
+    plain = transfer(source, {"u": u}, target, method="conservative").fields["u"]
+    monkeypatch.setattr(projection, "LARGEST_DENSE", 0)
+    iterated = transfer(source, {"u": u}, target, method="conservative").fields["u"]
+    np.testing.assert_allclose(iterated, plain, atol=1e-12)
 
 
 def test_points_inside_a_region_take_values_of_that_region():

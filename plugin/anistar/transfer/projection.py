@@ -8,12 +8,19 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import pinvh
 from scipy.sparse import coo_array, csr_array, diags_array
-from scipy.sparse.linalg import LinearOperator, aslinearoperator
+from scipy.sparse.linalg import LinearOperator, aslinearoperator, minres
 
 from ..mesh import Mesh
 from ..topology import Bool, Float, Int, cell_volumes
 from .intersection import Supermesh
 from .mass import Mass, mass
+
+# Beyond this number of regions their system is solved by iteration: an inverse of many would take
+# longer than the projection.
+LARGEST_DENSE = 200
+SOLVED = 1e-15
+# Times that the integrals are corrected; the second takes the round-off of the first.
+CORRECTIONS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +51,9 @@ class Projector:
     The Galerkin projection [1] of continuous P1 fields, whose hat functions straddle interfaces,
     keeps the total integral only. What then is missing over each region is added by the change
     that is smallest in the lumped L2 norm: one vector for each region, 1 inside it; for a single
-    region it adds nothing but round-off. As a small dense system gives the amounts, the integrals
-    do not depend on the tolerance of the iteration. Regions that the two meshes do not cover
-    alike are corrected together, to the integral that the target sees.
+    region it adds nothing but round-off. A system of the size of the number of regions gives the
+    amounts, so that the integrals do not depend on the tolerance of the iteration. Regions that
+    the two meshes do not cover alike are corrected together, to the integral that the target sees.
 
     References
     ----------
@@ -58,7 +65,7 @@ class Projector:
     def __init__(self, overlap: Supermesh) -> None:
         self.overlap = overlap
         self._functionals: dict[str, tuple[csr_array, csr_array]] = {}
-        self._corrections: dict[str, tuple[csr_array, Float]] = {}
+        self._corrections: dict[str, tuple[csr_array, LinearOperator]] = {}
 
     @cached_property
     def mass(self) -> Mass:
@@ -112,17 +119,12 @@ class Projector:
         rest = field.load.sum(axis=0) - kept.sum(axis=0)
         return np.concatenate([kept, rest[None]])
 
-    def corrections(self, on: str) -> tuple[csr_array, Float]:
+    def corrections(self, on: str) -> tuple[csr_array, LinearOperator]:
         """Return the (n, r) vectors that correct integrals, and their amounts (r, r) for each."""
         if on not in self._corrections:
             after = self.functionals(on)[1]
             vectors = csr_array(diags_array(1 / self.lumped_mass(on)) @ after.T)
-            gram = (after @ vectors).toarray()
-            # Scaled, so that small regions count as much as large ones; a pseudo-inverse, because
-            # regions without points of their own cannot all be corrected.
-            scale = 1 / np.sqrt(np.diag(gram))
-            inverse = pinvh(scale[:, None] * gram * scale)
-            self._corrections[on] = vectors, scale[:, None] * inverse * scale
+            self._corrections[on] = vectors, pseudo_inverse(csr_array(after @ vectors))
         return self._corrections[on]
 
     def lumped_mass(self, on: str) -> Float:
@@ -136,8 +138,10 @@ class Projector:
         """Return the (n_target, c) projection of a field."""
         values = self.solved(field.load, field.on)
         vectors, amounts = self.corrections(field.on)
-        defect = self.integrals(field) - self.functionals(field.on)[1] @ values
-        return np.asarray(values + vectors @ (amounts @ defect))
+        wanted, after = self.integrals(field), self.functionals(field.on)[1]
+        for _ in range(CORRECTIONS):
+            values = values + vectors @ (amounts @ (wanted - after @ values))
+        return np.asarray(values)
 
     def operator(self, on: str) -> LinearOperator:
         """Return the projection as a linear operator with its adjoint."""
@@ -165,6 +169,25 @@ class Projector:
             )
         scaling = diags_array(1 / self.lumped_mass(on))
         return aslinearoperator(csr_array(scaling @ self.overlap.matrix(on)))
+
+
+def pseudo_inverse(gram: csr_array) -> LinearOperator:
+    """Return the pseudo-inverse of a sparse symmetric positive semi-definite matrix.
+
+    It is scaled, so that small regions count as much as large ones, and singular where regions
+    have no points of their own and cannot all be corrected.
+    """
+    scale = 1 / np.sqrt(gram.diagonal())
+    scaled = csr_array(diags_array(scale) @ gram @ diags_array(scale))
+    n = len(scale)
+    if n <= LARGEST_DENSE:
+        dense = scale[:, None] * pinvh(scaled.toarray()) * scale
+        return aslinearoperator(dense)
+
+    def solved(right: Float) -> Float:
+        return np.asarray(scale * minres(scaled, scale * right.ravel(), rtol=SOLVED)[0])
+
+    return LinearOperator((n, n), matvec=solved, rmatvec=solved, dtype=np.float64)
 
 
 def integrals_matrix(mesh: Mesh, groups: Int, count: int, on: str) -> csr_array:
