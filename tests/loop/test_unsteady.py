@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import square
+from meshes import cube, square
 
 import anistar
 from anistar.series import SeriesWriter
@@ -72,6 +72,38 @@ def test_fields_come_across_once_for_each_new_mesh():
     assert done.windows[0].transfer is None  # the first is evaluated, not transferred
     assert done.windows[1].transfer["points_outside"] == 0
     assert done.as_dict()["windows"][1]["begin"] == pytest.approx(0.2)
+
+
+def test_transfers_are_bounded_unless_another_is_asked_for():
+    assert UnsteadyOptions(adapt=ADAPT).adapt.transfer.method == "bounded"
+    assert UnsteadyOptions().adapt.transfer.method == "bounded"
+    other = anistar.TransferOptions(method="conservative")
+    kept = UnsteadyOptions(adapt=anistar.AdaptOptions(transfer=other))
+    assert kept.adapt.transfer == other
+
+
+@pytest.mark.parametrize(("make", "complexity"), [(square, 200), (cube, 150)])
+def test_many_transfers_make_no_new_extrema_and_keep_the_integral(make, complexity):
+    """A sharp step that stands still on meshes that are made anew all the time."""
+    options = anistar.AdaptOptions.from_dict({"target_complexity": complexity, "a_max": 10})
+    start = make(6)
+    done = unsteady_loop(
+        standing,
+        start,
+        {"u": np.where(start.points[:, 0] < 0.4, 1.0, 0.0)},
+        np.linspace(0.0, 1.0, 5),
+        UnsteadyOptions(adapt=options, window=1, unit_edges=1.0),
+    )
+    assert [window.adaptations for window in done.windows] == [1, 1, 1, 1]
+    assert anistar.validate(done.last.mesh, start) == []
+    u = done.last.fields["u"]
+    assert u.min() >= 0.0
+    assert u.max() <= 1.0
+    for window in done.windows:
+        (before,), (after,) = (
+            window.transfer["changes"]["u"]["integral"][when] for when in ("before", "after")
+        )
+        assert after == pytest.approx(before, abs=1e-12)
 
 
 def test_initial_values_on_the_first_mesh_only_are_transferred():
