@@ -250,11 +250,19 @@ def _transfer(carried: Mapping[str, Any]) -> str:
     for name, change in carried["changes"].items():
         for kind in ("integral", "minimum", "maximum"):
             pairs = zip(change[kind]["before"], change[kind]["after"], strict=True)
-            rows += [[name, kind, before, after, after - before] for before, after in pairs]
+            rows += [
+                [component, kind, before, after, after - before]
+                for component, (before, after) in zip(_components(name, change), pairs, strict=True)
+            ]
     return (
         f"<h3>Transfer</h3><p>{_text(carried['method'])}, {carried['points_outside']} points "
         f"outside</p>{_table(['field', 'of the field', 'before', 'after', 'change'], rows)}"
     )
+
+
+def _components(name: str, change: Mapping[str, Any]) -> list[str]:
+    count = len(change["integral"]["before"])
+    return [name] if count == 1 else [f"{name}[{i}]" for i in range(count)]
 
 
 def _figure(draw: Callable[[io.BytesIO], object], caption: str) -> str:

@@ -32,9 +32,8 @@ Advance = Callable[[Mesh, Fields, float, float], Mapping[str, Field | ArrayLike]
 Initial = Mapping[str, Field | ArrayLike] | Callable[[Mesh], Mapping[str, Field | ArrayLike]]
 
 
-def _bounded_transfer() -> AdaptOptions:
-    # Hundreds of transfers add up: none may lose mass or make new extrema.
-    return AdaptOptions(transfer=TransferOptions(method="bounded", outside="nearest"))
+# Hundreds of transfers add up: none may lose mass or make new extrema.
+_BOUNDED = TransferOptions(method="bounded", outside="nearest")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +44,7 @@ class UnsteadyOptions:
     ----------
     adapt : AdaptOptions
         Of every stage; the target is that of one mesh, which serves all instants of a window.
-        The transfer is ``bounded`` by default.
+        The transfer is ``bounded``, and ``nearest`` outside, unless other options are given for it.
     window : int
         Steps from one adaptation to the next.
     passes : int
@@ -61,7 +60,7 @@ class UnsteadyOptions:
         If a number is out of range.
     """
 
-    adapt: AdaptOptions = field(default_factory=_bounded_transfer)
+    adapt: AdaptOptions = field(default_factory=AdaptOptions)
     window: int = 8
     passes: int = 1
     unit_edges: float = 0.8
@@ -69,6 +68,8 @@ class UnsteadyOptions:
 
     def __post_init__(self) -> None:
         require(AdaptOptions, adapt=self.adapt)
+        if self.adapt.transfer == AdaptOptions().transfer:
+            object.__setattr__(self, "adapt", replace(self.adapt, transfer=_BOUNDED))
         for name in ("window", "passes"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")

@@ -1,9 +1,6 @@
 """DMPlex to Mesh and back with all labels, and anistar inside PETSc."""
 
 import ctypes
-import math
-import os
-import subprocess
 import sys
 from functools import partial
 from pathlib import Path
@@ -16,6 +13,8 @@ import anistar
 
 petsc = pytest.importorskip("anistar.adapters.petsc", reason="no petsc4py for Python 3.11")
 PETSc = petsc.PETSc
+
+from plexes import completed, measures, run, uniform_metric  # noqa: E402
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "solver_examples/petsc/reaction_diffusion.py"
 TAGGED = [two_regions, slit, annulus, cube, two_region_cube]
@@ -45,45 +44,6 @@ def strata(plex):
         if name not in {"depth", "celltype"}
         for value in plex.getLabelIdIS(name).getIndices()
     }
-
-
-def sizes(points, simplices):
-    """Length, area or volume; 1 for a point."""
-    legs = points[simplices[:, 1:]] - points[simplices[:, :1]]
-    gram = legs @ legs.transpose(0, 2, 1)
-    return np.sqrt(np.linalg.det(gram)) / math.factorial(legs.shape[1])
-
-
-def measures(mesh, labels):
-    """Volume, area, length or number of what carries each label and value, by dimension."""
-    found = {(0, pair): 0.0 for pairs in labels.corners.values() for pair in pairs}
-    for corner in mesh.corners:
-        for pair in labels.corners.get(tuple(mesh.points[corner]), ()):
-            found[0, pair] += 1.0
-    tagged = {mesh.dim: (mesh.cells, mesh.cell_tags), mesh.dim - 1: (mesh.facets, mesh.facet_tags)}
-    if mesh.dim == 3:
-        tagged[1] = (mesh.edges, mesh.edge_tags)
-    for (dim, tag), pairs in labels.pairs.items():
-        simplices, tags = tagged[dim]
-        for pair in pairs:
-            size = sizes(mesh.points, simplices[tags == tag]).sum()
-            found[dim, pair] = found.get((dim, pair), 0.0) + size
-    return found
-
-
-def completed(mesh):
-    """A DMPlex with labels of PETSc's usual kinds: overlapping, completed, on single vertices."""
-    plex = petsc.to_dmplex(mesh)
-    plex.markBoundaryFaces("marker", 1)
-    plex.labelComplete(plex.getLabel("marker"))
-    plex.createLabel("probe")
-    plex.setLabelValue("probe", plex.getDepthStratum(0)[0] + 2, 5)
-    plex.createLabel("empty")
-    return plex
-
-
-def uniform_metric(mesh, h):
-    return np.tile(np.eye(mesh.dim) / h**2, (mesh.n_points, 1, 1))
 
 
 @pytest.mark.parametrize("make", TAGGED)
@@ -345,14 +305,6 @@ def test_an_interruption_in_the_mesher_is_an_error_for_petsc():
         del PETSc.Options()["dm_adaptor"]
 
 
-def run(*command):
-    """Run another program with the packages of this one."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "OMP_NUM_THREADS": "1"}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
 def test_a_program_that_knows_nothing_of_anistar_adapts_with_it():
     shown = run(sys.executable, "-m", "anistar.adapters.petsc_program", EXAMPLE)
     rows = [line.split() for line in shown.splitlines()]
@@ -362,83 +314,3 @@ def test_a_program_that_knows_nothing_of_anistar_adapts_with_it():
     more = min(n for n in uniform if n >= most)
     assert uniform[more] > 20 * adapted[most]
     assert "anistar" not in EXAMPLE.read_text().split('"""')[2]
-
-
-PARALLEL = """
-import sys, warnings
-import numpy as np
-import meshes
-from test_petsc import completed, measures
-from anistar.adapters import petsc
-from anistar.adapters.petsc import PETSc, adaptor, gather, plex as conversion
-
-make, n, kind = sys.argv[1:]
-comm = PETSc.COMM_WORLD
-petsc.register()
-PETSc.Options()["dm_adaptor"] = "anistar"
-mesh, labels = petsc.from_dmplex(completed(getattr(meshes, make)(int(n))))
-plex = conversion.plex_of(mesh if comm.rank == 0 else None, labels, comm, mesh.dim)
-plex.distribute()
-plex.metricSetGradationFactor(1.0)
-plex.metricSetIsotropic(kind == "isotropic")
-if kind == "uniform":
-    metric = plex.metricCreateUniform(100.0)
-else:
-    x = plex.getCoordinatesLocal().getArray().reshape(-1, mesh.dim)[:, 0]
-    sizes = (0.08 + 0.1 * abs(x - 0.5)) ** -2
-    tensor = 1.0 if kind == "isotropic" else np.eye(mesh.dim).ravel()
-    metric = plex.metricCreate()
-    metric.setArray(np.multiply.outer(sizes, tensor).ravel())
-adaptor._LARGE = 10
-with warnings.catch_warnings(record=True) as caught:
-    warnings.simplefilter("always")
-    new = plex.adaptMetric(metric, "Face Sets", "Cell Sets")
-warned = [str(w.message) for w in caught if "adapted on one of 2 processes" in str(w.message)]
-plex.metricSetGradationFactor(1.05)
-graded = plex.adaptMetric(metric)
-metric.set(-1.0)
-try:
-    plex.adaptMetric(metric)
-except PETSc.Error as error:
-    failed = "not positive definite" in str(error)
-counts = [end - start for start, end in (new.getHeightStratum(0), graded.getHeightStratum(0))]
-def on_first(distributed):
-    vertices = np.subtract(*distributed.getDepthStratum(0)[::-1])
-    whole, _ = gather.gathered(distributed, np.zeros((vertices, mesh.dim, mesh.dim)))
-    return petsc.plex.read_plex(whole) if comm.rank == 0 else None
-after = on_first(new)
-plex.distributeOverlap(1)
-try:
-    plex.adaptMetric(metric)
-except PETSc.Error as error:
-    refused = "has an overlap" in str(error)
-told = comm.tompi4py().gather((counts, len(warned), failed, refused))
-if comm.rank == 0:
-    before, found = measures(mesh, labels), measures(*after)
-    shares, warnings_, failures, refusals = zip(*told)
-    totals = np.sum(shares, axis=0)
-    print(
-        min(share[0] for share in shares) > 0.3 * totals[0],
-        totals[1] > totals[0] if kind != "uniform" else totals[1] == totals[0],
-        before.keys() == found.keys() and all(abs(before[k] - found[k]) < 1e-9 for k in before),
-        after[1].completed == labels.completed and after[1].names == labels.names,
-        warnings_, all(failures), all(refusals),
-    )
-"""
-
-
-@pytest.mark.parametrize(
-    ("make", "n", "kind"),
-    [
-        ("two_regions", 6, "full"),
-        ("two_region_cube", 2, "full"),
-        ("slit", 6, "isotropic"),
-        ("cube", 2, "uniform"),
-    ],
-)
-def test_a_distributed_dmplex_is_gathered_adapted_and_distributed_again(tmp_path, make, n, kind):
-    program = tmp_path / "parallel.py"
-    program.write_text(PARALLEL)
-    mpiexec = Path(sys.executable).with_name("mpiexec")
-    shown = run(mpiexec, "-n", "2", sys.executable, program, make, str(n), kind)
-    assert shown == "True True True True (1, 0) True True\n"

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from meshes import cube, slit, square, two_region_cube, two_regions
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersTensor import vtkTensorPrincipalInvariants
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 import anistar
@@ -86,6 +87,27 @@ def test_values_outlive_the_grid_that_they_are_shared_with():
     _, found = vtk.from_vtk(vtk.to_vtk(mesh, {"u": np.arange(float(mesh.n_points))}))
     _ = [np.zeros(mesh.n_points) for _ in range(50)]
     assert np.array_equal(found["u"].values, np.arange(float(mesh.n_points)))
+
+
+@pytest.mark.parametrize("make", [square, cube])
+def test_symmetric_tensors_of_six_components_are_in_the_order_of_vtk(make):
+    """VTK's own filter says which component is which: its invariants are the eigenvalues."""
+    mesh = make(2)
+    M = fields_of(mesh)["m"]
+    full = np.zeros((mesh.n_points, 3, 3))
+    full[:, : mesh.dim, : mesh.dim] = M
+    grid = vtk.to_vtk(mesh)
+    six = numpy_to_vtk(full[:, [0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]].copy(), deep=True)
+    six.SetName("sigma")
+    grid.GetPointData().AddArray(six)
+    assert np.array_equal(vtk.from_vtk(grid)[1]["sigma"].values, M)
+    invariants = vtkTensorPrincipalInvariants()
+    invariants.SetInputData(grid)
+    invariants.SetInputArrayToProcess(0, 0, 0, 0, "sigma")
+    invariants.Update()
+    data = invariants.GetOutput().GetPointData()
+    largest = vtk_to_numpy(data.GetArray(invariants.GetSigmaValueArrayName("sigma", 1)))
+    assert np.allclose(largest, np.linalg.eigvalsh(full)[:, -1])
 
 
 def test_anistar_reads_what_vtk_writes(tmp_path):

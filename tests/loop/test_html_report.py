@@ -72,7 +72,14 @@ def test_the_page_shows_every_iteration_with_pictures_histograms_and_tables(run,
     report = json.loads((run / "report.json").read_text())
     for step in report["steps"]:
         assert f"Iteration {step['iteration']}: {step['points']} points" in page.said
-    for words in ("complexities done", "certified stars", "of the stars", "bottom", "integral"):
+    for words in (
+        "complexities done",
+        "certified stars",
+        "of the stars",
+        "bottom",
+        "integral",
+        "v[1]",
+    ):
         assert words in page.said
 
 

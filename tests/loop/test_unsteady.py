@@ -1,14 +1,12 @@
 """Meshes follow a solution in time; they are kept while they fit."""
 
-import dataclasses
 
 import numpy as np
 import pytest
-from meshes import square
+from meshes import cube, square
 
 import anistar
 from anistar.series import SeriesWriter
-from anistar.transfer import integral
 from anistar.unsteady import UnsteadyOptions, needs_adaptation, unsteady_loop
 
 ADAPT = anistar.AdaptOptions.from_dict({"target_complexity": 200})
@@ -77,35 +75,36 @@ def test_fields_come_across_once_for_each_new_mesh():
     assert done.as_dict()["windows"][1]["begin"] == pytest.approx(0.2)
 
 
-def test_the_default_transfer_loses_no_mass_and_makes_no_new_extrema():
-    def drifting(mesh, fields, begin, end):
-        return {"u": wave(mesh.points, end), "dye": fields["dye"]}
+def test_transfers_are_bounded_unless_another_is_asked_for():
+    assert UnsteadyOptions(adapt=ADAPT).adapt.transfer.method == "bounded"
+    assert UnsteadyOptions().adapt.transfer.method == "bounded"
+    other = anistar.TransferOptions(method="conservative")
+    kept = UnsteadyOptions(adapt=anistar.AdaptOptions(transfer=other))
+    assert kept.adapt.transfer == other
 
-    def dyed(mesh):
-        dye = np.linalg.norm(mesh.points - [0.5, 0.4], axis=1) < 0.25
-        return {"u": wave(mesh.points, 0.0), "dye": dye.astype(float)}
 
-    default = UnsteadyOptions().adapt
-    assert default.transfer.method == "bounded"
-    adapt = dataclasses.replace(
-        default, metric=anistar.MetricOptions(target_complexity=200), metric_fields=("u",)
-    )
-    shown = []
+@pytest.mark.parametrize(("make", "complexity"), [(square, 200), (cube, 150)])
+def test_many_transfers_make_no_new_extrema_and_keep_the_integral(make, complexity):
+    """A sharp step that stands still on meshes that are made anew all the time."""
+    options = anistar.AdaptOptions.from_dict({"target_complexity": complexity, "a_max": 10})
+    start = make(6)
     done = unsteady_loop(
-        drifting,
-        square(10),
-        dyed,
-        TIMES,
-        UnsteadyOptions(adapt=adapt, window=2, passes=1),
-        callback=shown.append,
+        standing,
+        start,
+        {"u": np.where(start.points[:, 0] < 0.4, 1.0, 0.0)},
+        np.linspace(0.0, 1.0, 5),
+        UnsteadyOptions(adapt=options, window=1, unit_edges=1.0),
     )
-    assert sum(window.transfer is not None for window in done.windows) >= 3
-    masses = [float(integral(at.mesh, anistar.Field(at.fields["dye"]))) for at in shown]
-    assert np.ptp(masses[1:]) < 1e-12 * masses[1]
-    for instant in shown:
-        assert anistar.validate(instant.mesh) == []
-        assert instant.fields["dye"].min() >= 0
-        assert instant.fields["dye"].max() <= 1
+    assert [window.adaptations for window in done.windows] == [1, 1, 1, 1]
+    assert anistar.validate(done.last.mesh, start) == []
+    u = done.last.fields["u"]
+    assert u.min() >= 0.0
+    assert u.max() <= 1.0
+    for window in done.windows:
+        (before,), (after,) = (
+            window.transfer["changes"]["u"]["integral"][when] for when in ("before", "after")
+        )
+        assert after == pytest.approx(before, abs=1e-12)
 
 
 def test_initial_values_on_the_first_mesh_only_are_transferred():

@@ -72,16 +72,17 @@ def from_ngsolve(other: Any) -> Mesh:
     facets, facet_tags, sides = _read(elements[dim - 1]().NumPy(), dim - 1, other.GetBoundaries())
     inverted = cell_determinants(points, cells) < 0
     cells[inverted, -2:] = cells[inverted, :-3:-1]
-    ridges = _ridges(other) if dim == 3 else {}
+    edges, edge_tags, ridges = _ridges(other)
     return Mesh(
         points=points,
         cells=cells,
         cell_tags=cell_tags,
         facets=facets,
         facet_tags=facet_tags,
+        edges=edges,
+        edge_tags=edge_tags,
         corners=_corners(other),
-        names={**names, **sides, **ridges.pop("names", {})},
-        **ridges,
+        names={**names, **sides, **ridges},
     )
 
 
@@ -149,13 +150,16 @@ def _nodal(function: Any) -> Float:
     return np.asarray(rows[: space.mesh.nv])
 
 
-def _ridges(other: Any) -> dict[str, Any]:
-    """Return the named edges of a 3D mesh as arguments of `Mesh`."""
-    called = other.GetBBoundaries()
-    rows, tags, names = _read(other.ngmesh.Elements1D().NumPy(), 1, called)
-    own = np.isin(tags, [tag for (_, tag), name in names.items() if name not in _NAMELESS])
+def _ridges(
+    other: Any,
+) -> tuple[NDArray[np.int32], NDArray[np.int32], dict[tuple[int, int], str]]:
+    """Return the points, tags and names of the edges in space that have a name."""
+    if other.dim == 2:
+        return np.zeros((0, 2), np.int32), np.zeros(0, np.int32), {}
+    rows, tags, names = _read(other.ngmesh.Elements1D().NumPy(), 1, other.GetBBoundaries())
     kept = {key: name for key, name in names.items() if name not in _NAMELESS}
-    return {"edges": rows[own], "edge_tags": tags[own], "names": kept}
+    own = np.isin(tags, [tag for _, tag in kept])
+    return rows[own], tags[own], kept
 
 
 def _corners(other: Any) -> NDArray[np.int32]:
