@@ -92,6 +92,11 @@ def supermesh3(source_points: Annotated[NDArray[numpy.float64], dict(shape=(None
     Lay two meshes over each other: matrices (starts, columns, values) between points and between cells, moments of the pairs, loads of nodal values, and coverage.
     """
 
+def tet_qualities(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+    """
+    Mean ratios (m, 3) of tetrahedra given by four points each: in the mean of the metrics, the same for a moving vertex, in the densest; -1 when flat.
+    """
+
 def wide_graph(cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], n_points: int) -> tuple:
     """
     The graph of the edges of a mesh and of the vertices opposite across facets; returns (offsets, neighbours).

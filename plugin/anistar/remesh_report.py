@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from .bad_cells import BAD_QUALITY, BadCell, worst_cells
 from .errors import MeshingError
 from .mesh import Mesh
 from .topology import cell_volumes, edge_lengths, facet_measures, measure_by_tag
@@ -44,6 +45,10 @@ class RemeshReport:
         ``edge_unit`` (fraction of edges within [1/sqrt 2, sqrt 2]), ``edge_min``, ``edge_mean``,
         ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
         ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
+    n_bad_cells : int
+        Cells whose mean ratio is below 1e-3: what no operation could improve.
+    bad_cells : tuple of BadCell
+        The worst of them, ten at most: row, quality and place.
     agreement : str
         ``done``, ``off``, or ``skipped:`` and why; in 3D also what was left when it stalled.
     consistency : dict
@@ -71,6 +76,8 @@ class RemeshReport:
     n_points: int
     n_cells: int
     statistics: dict[str, Any]
+    n_bad_cells: int
+    bad_cells: tuple[BadCell, ...]
     agreement: str
     consistency: dict[str, Any]
     simplex_ok: float | None
@@ -84,6 +91,7 @@ class RemeshReport:
         """Return the report as JSON builtins."""
         out = asdict(self)
         out["tags"] = [{**asdict(tag), "change": tag.change} for tag in self.tags]
+        out["bad_cells"] = [{**asdict(bad), "place": list(bad.place)} for bad in self.bad_cells]
         return out
 
 
@@ -99,6 +107,10 @@ def report_of(
     MeshingError
         If a tag of the geometry is gone.
     """
+    n_bad: int = 0
+    bad: tuple[BadCell, ...] = ()
+    if not raw["statistics"]["q_min"] >= BAD_QUALITY:
+        n_bad, bad = worst_cells(new, raw["metric"])
     return RemeshReport(
         converged=raw["stop_reason"] == "finished"
         and raw["consistency"]["stop_reason"] in ("", "consistent"),
@@ -106,6 +118,8 @@ def report_of(
         n_points=new.n_points,
         n_cells=new.n_cells,
         statistics=raw["statistics"],
+        n_bad_cells=n_bad,
+        bad_cells=bad,
         agreement=raw["agreement"],
         consistency=raw["consistency"],
         simplex_ok=raw["simplex_ok"],

@@ -46,10 +46,12 @@ inline constexpr double squared_flatness = flatness * flatness;
 ///   so v is off by 8.01 u times the permanent of |e|, |f|, |g|. That is at most the
 ///   product of their 1-norms, 3 sqrt 3 |e| |f| |g|, which is at most S^1.5 because
 ///   |e|^2 + |f|^2 + |g|^2 <= S.
-/// - `plain` is S within 64 u: by Cauchy's inequality 4 (ee + ff + gg) - ss is at least a
+/// - `plain` is S within 64 u: by Cauchy's inequality 4 (ee + ff + gg) - ss is at least
+/// a
 ///   quarter of what it is computed from.
 /// - So v > 64 u S^1.5, but for those errors and a few u, leaves more than 55 u S^1.5.
-/// - Underflow: v v > 0 needs v > 2^-538, while products that underflow change v by less
+/// - Underflow: v v > 0 needs v > 2^-538, while products that underflow change v by
+/// less
 ///   than 2^-1070 times an edge; a bound that underflows is below 2^-537.
 /// - Overflow of the bound or of both gives no positive difference.
 /// Cells between that bound and zero are refused: they are flat to whoever computes

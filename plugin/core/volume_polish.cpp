@@ -24,6 +24,9 @@ constexpr std::size_t longest_ring = 9;
 /// The metric is steep when the densities within a cell differ by this at the median.
 constexpr double steep_ratio = 1.5;
 
+/// The mean of the metrics is rarely this much kinder to a cell than the densest.
+constexpr double largest_difference = .3;
+
 double measured(const Triangulation<3> &mesh, const Cell<3> &cell) {
   return quality(mesh.vertex(cell[0]), mesh.vertex(cell[1]), mesh.vertex(cell[2]),
                  mesh.vertex(cell[3]));
@@ -60,6 +63,7 @@ void VolumePasses::polish_vertices(double below) {
   std::vector<std::uint8_t> is_wanted(n, 0);
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     if (mesh.cells[c][0] != none && volume_.cell_clock[c] >= since &&
+        volume_.quality_of(static_cast<Index>(c)) < below + largest_difference &&
         measured(mesh, mesh.cells[c]) < below)
       for (Index v : mesh.cells[c])
         is_wanted[static_cast<std::size_t>(v)] = 1;
@@ -133,7 +137,8 @@ void VolumePasses::polish_cells(double below) {
   const std::size_t n = mesh.cells.size();
   for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
     const auto c = static_cast<Index>(k);
-    if (!mesh.is_alive(c) || measured(mesh, mesh.at(c)) >= below)
+    if (!mesh.is_alive(c) || volume_.quality_of(c) >= below + largest_difference ||
+        measured(mesh, mesh.at(c)) >= below)
       continue;
     const Cell<3> cell = mesh.at(c);
     bool is_done = false;

@@ -23,6 +23,8 @@ constexpr double step_is_dry = .02, growth_is_dry = .03;
 constexpr double steady = .01;
 /// The mesh is sorted again when it has grown by this.
 constexpr double growth_between_sorts = 1.6;
+/// Or, at the final size, when this fraction of its vertices came or went.
+constexpr double change_between_sorts = .1;
 /// Sweeps over the whole mesh at its final size.
 constexpr int n_sweeps = 3;
 /// Where the metric is steep, all is polished, several times; else what is below this.
@@ -65,7 +67,10 @@ void grow(Volume &volume, VolumePasses &passes) {
     if (is_lowered)
       threshold = std::max(longest_edge, threshold / growth_step);
   }
-  renumber(volume);
+  const std::size_t changes = passes.counts().splits + passes.counts().collapses;
+  if (static_cast<double>(changes) >
+      change_between_sorts * static_cast<double>(volume.n_vertices()))
+    renumber(volume);
 }
 
 /// Phase 3: sweeps at the final size.

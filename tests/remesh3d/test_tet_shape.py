@@ -15,14 +15,16 @@ ROUND_OFF = 2.0**-53
 
 def exact_volume6(tetrahedron):
     a, *others = ([Fraction(float(x)) for x in corner] for corner in tetrahedron)
-    (e0, e1, e2), (f0, f1, f2), (g0, g1, g2) = ([x - y for x, y in zip(b, a)] for b in others)
+    (e0, e1, e2), (f0, f1, f2), (g0, g1, g2) = (
+        [x - y for x, y in zip(b, a, strict=True)] for b in others
+    )
     return e0 * (f1 * g2 - f2 * g1) + e1 * (f2 * g0 - f0 * g2) + e2 * (f0 * g1 - f1 * g0)
 
 
 def sum_of_squares(tetrahedron):
     corners = [[Fraction(float(x)) for x in corner] for corner in tetrahedron]
     return sum(
-        sum((x - y) ** 2 for x, y in zip(corners[i], corners[j]))
+        sum((x - y) ** 2 for x, y in zip(corners[i], corners[j], strict=True))
         for i in range(4)
         for j in range(i)
     )
