@@ -63,7 +63,11 @@ private:
   VolumeAgreementCounts counts_;
   std::size_t calls_ = 0;
 
-  [[nodiscard]] bool go_on(double fraction) { return monitor_.keep_going(0, fraction); }
+  [[nodiscard]] bool go_on(double fraction) {
+    return ++calls_ % calls_between_looks == 0
+               ? monitor_.look(fraction)
+               : monitor_.reason() == StopReason::finished;
+  }
   [[nodiscard]] bool still_fails(HalfFacet h) {
     return mesh_.is_alive(h.cell()) && state_.margins.fails(h);
   }
