@@ -74,10 +74,12 @@ private:
 
   /// The one search of the mesh.
   void scan() {
-    for (std::size_t k = 0; k < mesh_.cells.size(); ++k)
-      if (mesh_.is_alive(static_cast<Index>(k)))
-        for (std::size_t i = 0; i < 4; ++i)
-          list(HalfFacet(static_cast<Index>(k), i), failing_);
+    for (std::size_t k = 0; k < mesh_.cells.size(); ++k) {
+      const auto c = static_cast<Index>(k);
+      for (std::size_t i = 0; mesh_.is_alive(c) && i < 4; ++i)
+        if (mesh_.opposite(HalfFacet(c, i)).cell() > c)
+          list(HalfFacet(c, i), failing_);
+    }
   }
 
   /// Adds a failing facet as seen from its first cell.

@@ -28,7 +28,7 @@ def fails(x, M):
     return any(exact_in_sphere(metric, x[:4], x[4]) > 0 for metric in M)
 
 
-@pytest.mark.parametrize("stretch, squash", [(0.0, 1.0), (1.0, 1.0), (6.0, 1.0), (2.0, 1e-4)])
+@pytest.mark.parametrize(("stretch", "squash"), [(0.0, 1.0), (1.0, 1.0), (6.0, 1.0), (2.0, 1e-4)])
 def test_its_sign_is_that_of_the_definition(stretch, squash):
     rng = np.random.default_rng(7)
     seen = set()

@@ -123,7 +123,7 @@ def test_it_is_left_out_unless_it_is_asked_for():
 
 
 def test_a_callback_may_end_it():
-    class Enough(Exception):
+    class EnoughError(Exception):
         pass
 
     seen = []
@@ -131,10 +131,10 @@ def test_a_callback_may_end_it():
     def stop(phase, fraction):
         seen.append(phase)
         if seen.count("agreement") > 1:
-            raise Enough
+            raise EnoughError
 
     mesh, M, first = adapted()
-    with pytest.raises(Enough):
+    with pytest.raises(EnoughError):
         remesh(mesh, M, RemeshOptions(agreement=True, callback=stop), geometry=first)
 
 
