@@ -63,17 +63,23 @@ private:
   VolumeAgreementCounts counts_;
   std::size_t calls_ = 0;
 
-  [[nodiscard]] bool go_on(double fraction) { return monitor_.keep_going(0, fraction); }
+  [[nodiscard]] bool go_on(double fraction) {
+    return ++calls_ % calls_between_looks == 0
+               ? monitor_.look(fraction)
+               : monitor_.reason() == StopReason::finished;
+  }
   [[nodiscard]] bool still_fails(HalfFacet h) {
     return mesh_.is_alive(h.cell()) && state_.margins.fails(h);
   }
 
   /// The one search of the mesh.
   void scan() {
-    for (std::size_t k = 0; k < mesh_.cells.size(); ++k)
-      if (mesh_.is_alive(static_cast<Index>(k)))
-        for (std::size_t i = 0; i < 4; ++i)
-          list(HalfFacet(static_cast<Index>(k), i), failing_);
+    for (std::size_t k = 0; k < mesh_.cells.size(); ++k) {
+      const auto c = static_cast<Index>(k);
+      for (std::size_t i = 0; mesh_.is_alive(c) && i < 4; ++i)
+        if (mesh_.opposite(HalfFacet(c, i)).cell() > c)
+          list(HalfFacet(c, i), failing_);
+    }
   }
 
   /// Adds a failing facet as seen from its first cell.

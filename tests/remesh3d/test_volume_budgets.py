@@ -57,11 +57,10 @@ def test_a_metric_that_is_not_positive_is_named():
         remesh(mesh, M)
 
 
-@pytest.mark.parametrize("option", [{"agreement": True}, {"until_consistent": True}])
-def test_what_exists_in_2d_only_is_refused(option):
+def test_until_consistent_exists_in_2d_only():
     mesh = cube(2)
     with pytest.raises(ValueError, match="in 2D only"):
-        remesh(mesh, uniform(mesh, 0.3), RemeshOptions(**option))
+        remesh(mesh, uniform(mesh, 0.3), RemeshOptions(until_consistent=True))
 
 
 def test_a_single_tetrahedron_is_refined():

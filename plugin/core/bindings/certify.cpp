@@ -1,4 +1,5 @@
 #include "../certify.h"
+#include "../facet_test.h"
 #include "bind.h"
 #include "geometry.h"
 
@@ -122,6 +123,20 @@ bool meets_ball(const Array2<double> &metric, const Array2<double> &simplex,
   return ball.meets(corners, powers);
 }
 
+double margin_of_facet(const Array2<double> &points, const Array3<double> &metric) {
+  const auto x = points_of<3>(points);
+  const auto tensors = tensors_of<3>(metric);
+  if (x.size() != 5 || tensors.size() != 5)
+    throw std::invalid_argument("a facet and the vertices beside it are 5 points");
+  std::array<Vertex<3>, 5> vertices;
+  FacetStar star;
+  for (std::size_t k = 0; k < 5; ++k) {
+    vertices[k] = make_vertex<3>(x[k], tensors[k]);
+    star[k] = &vertices[k];
+  }
+  return facet_margin(star);
+}
+
 template <std::size_t d> void bind_dimension(nb::module_ &module) {
   const std::string suffix = std::to_string(d);
   module.def(("certify" + suffix).c_str(), &certify_mesh<d>,
@@ -154,6 +169,11 @@ template <std::size_t d> void bind_dimension(nb::module_ &module) {
 void bind_certify(nb::module_ &module) {
   bind_dimension<2>(module);
   bind_dimension<3>(module);
+  module.def(
+      "facet_margin", &margin_of_facet, nb::arg("points").noconvert(),
+      nb::arg("metric").noconvert(),
+      "For the cells abcd and abce: positive when e lies inside the "
+      "circumscribed ellipsoid of abcd for the metric at one of the five points.");
 }
 
 } // namespace anistar::bindings
