@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import asdict, dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,3 +52,7 @@ class ConsistencyOptions:
             raise ValueError(f"gamma_0 must be above 1, got {self.gamma_0}")
         if self.candidates < 1:
             raise ValueError(f"candidates must be at least 1, got {self.candidates}")
+
+    def as_parameters(self) -> dict[str, float]:
+        """Return the parameters for the core, where a bound that is off is infinite."""
+        return {**asdict(self), "gamma_0": math.inf if self.gamma_0 is None else self.gamma_0}

@@ -96,3 +96,8 @@ class RemeshOptions:
     def time_bound(self) -> float:
         """The wall time, in seconds, after which the call stops."""
         return math.inf if self.max_seconds is None else self.max_seconds
+
+    @property
+    def consistency_mode(self) -> str:
+        """``on``, ``off`` or ``pure``, for the core."""
+        return {True: "on", False: "off", "pure": "pure"}[self.until_consistent]

@@ -32,8 +32,10 @@ def remesh_volume(
     ValueError
         If an option asks for what exists in 2D only.
     """
-    if options.agreement is True or options.until_consistent:
-        raise ValueError("agreement=True and until_consistent exist in 2D only")
+    if options.agreement is True:
+        raise ValueError("agreement=True exists in 2D only")
+    if options.until_consistent == "pure":
+        raise ValueError('until_consistent="pure" exists in 2D only')
     raw: dict[str, Any] = _core.remesh3(
         mesh.points * scale,
         mesh.cells,
@@ -54,13 +56,12 @@ def remesh_volume(
         options.hausdorff_number,
         options.vertex_bound,
         options.time_bound,
+        options.consistency_mode,
+        options.consistency.as_parameters(),
         options.seed,
         options.threads,
         None if project is None else pointwise(project, scale),
         options.callback,
     )
     raw["agreement"] = NOT_YET if options.agreement else "off"
-    raw["simplex_ok"] = raw["star_ok"] = None
-    rules = ("size", "radius_edge", "sliver", "inconsistency", "boundary", "rounds")
-    raw["consistency"] = {**dict.fromkeys(rules, 0), "stop_reason": ""}
     return raw

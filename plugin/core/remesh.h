@@ -16,10 +16,6 @@ namespace anistar {
 /// it must not vary too fast from vertex to vertex.
 enum class AgreementMode { off, when_possible, on };
 
-/// Whether points are inserted until every star agrees; `pure` starts from the boundary
-/// alone and applies nothing but the rules of the paper.
-enum class ConsistencyMode { off, on, pure };
-
 struct RemeshSettings {
   ConsistencyMode consistency = ConsistencyMode::off;
   ConsistencyParameters parameters{};

@@ -1,6 +1,7 @@
 #include "volume_remesh.h"
 
 #include "stopwatch.h"
+#include "volume_consistency.h"
 
 namespace anistar {
 namespace {
@@ -82,6 +83,27 @@ void extract_facets(const Volume &volume, VolumeResult &out) {
   }
 }
 
+/// Phases 5 and 6, unless a budget has been spent: the cells of a mesh that is not
+/// refined can reach across the whole domain.
+void make_consistent(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
+                     Stopwatch &watch, VolumeResult &out) {
+  if (settings.consistency == ConsistencyMode::off)
+    return;
+  if (monitor.reason() != StopReason::finished) {
+    out.consistency.stop = name_of(monitor.reason());
+    return;
+  }
+  watch.phase("certificate");
+  DelaunayBits known = delaunay_bits<3>(certified(volume.mesh), settings.threads);
+  watch.phase("consistency");
+  out.consistency =
+      refine_until_consistent(volume, monitor, settings.parameters, settings.seed,
+                              settings.threads, false, known);
+  out.was_checked = true;
+  out.certified = certified_fractions(volume.mesh, known.bits);
+  renumber(volume);
+}
+
 } // namespace
 
 VolumeResult remesh_volume(const VolumeInput &input,
@@ -102,6 +124,8 @@ VolumeResult remesh_volume(const VolumeInput &input,
   watch.phase("shape");
   shape(passes);
   renumber(volume);
+  if (!passes.is_full())
+    make_consistent(volume, monitor, settings, watch, out);
 
   watch.phase("report");
   extract_facets(volume, out);

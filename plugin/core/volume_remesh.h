@@ -1,6 +1,7 @@
 #pragma once
 // remesh in 3D: a mesh, a metric field and a geometry in; a mesh with unit edges out.
 
+#include "consistency_rules.h"
 #include "statistics.h"
 #include "volume_passes.h"
 #include "volume_start.h"
@@ -12,7 +13,9 @@ struct VolumeSettings {
   std::size_t max_vertices = static_cast<std::size_t>(-1);
   double max_seconds = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 0;
-  int threads = 1; ///< for the figures of the report; the passes are serial
+  int threads = 1; ///< for the certificate and the report; the passes are serial
+  ConsistencyMode consistency = ConsistencyMode::off;
+  ConsistencyParameters parameters{};
 };
 
 /// The new mesh as flat arrays, and what happened.
@@ -26,6 +29,9 @@ struct VolumeResult {
   std::vector<Index> edge_tags;
   Statistics statistics;
   DistortionQuantiles distortion;
+  bool was_checked = false; ///< the certified fractions are known
+  CertifiedFractions certified;
+  ConsistencyCounts consistency;
   std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase
   StopReason reason = StopReason::finished;
