@@ -144,7 +144,7 @@ def _call_core(
             options.hausdorff_number,
             options.vertex_bound,
             options.time_bound,
-            {True: "on", False: "off", "auto": "auto"}[options.agreement],
+            options.agreement_mode,
             options.consistency_mode,
             options.consistency.as_parameters(),
             options.seed,

@@ -98,6 +98,11 @@ class RemeshOptions:
         return math.inf if self.max_seconds is None else self.max_seconds
 
     @property
+    def agreement_mode(self) -> str:
+        """The name of the mode of the agreement phase in the core."""
+        return {True: "on", False: "off", "auto": "auto"}[self.agreement]
+
+    @property
     def consistency_mode(self) -> str:
-        """``on``, ``off`` or ``pure``, for the core."""
+        """The name of the mode of the consistency phase in the core."""
         return {True: "on", False: "off", "pure": "pure"}[self.until_consistent]

@@ -12,8 +12,6 @@ from .mesh import Mesh
 from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 
-NOT_YET = "skipped: there is no agreement phase in 3D yet"
-
 
 def remesh_volume(
     mesh: Mesh,
@@ -32,8 +30,6 @@ def remesh_volume(
     ValueError
         If an option asks for what exists in 2D only.
     """
-    if options.agreement is True:
-        raise ValueError("agreement=True exists in 2D only")
     if options.until_consistent == "pure":
         raise ValueError('until_consistent="pure" exists in 2D only')
     raw: dict[str, Any] = _core.remesh3(
@@ -56,6 +52,7 @@ def remesh_volume(
         options.hausdorff_number,
         options.vertex_bound,
         options.time_bound,
+        options.agreement_mode,
         options.consistency_mode,
         options.consistency.as_parameters(),
         options.seed,
@@ -63,5 +60,4 @@ def remesh_volume(
         None if project is None else pointwise(project, scale),
         options.callback,
     )
-    raw["agreement"] = NOT_YET if options.agreement else "off"
     return raw

@@ -12,6 +12,14 @@ constexpr std::uint32_t port_bits = 13;
 
 bool CavityOperator::replace(std::span<const Index> cells, Index apex,
                              std::array<Index, 2> lost, const Acceptance &acceptance) {
+  if (!propose(cells, apex, lost, acceptance))
+    return false;
+  commit(cells);
+  return true;
+}
+
+bool CavityOperator::propose(std::span<const Index> cells, Index apex,
+                             std::array<Index, 2> lost, const Acceptance &acceptance) {
   apex_ = apex;
   lost_ = lost;
   if (!collect(cells, acceptance) || !keeps_vertices(cells))
@@ -22,10 +30,7 @@ bool CavityOperator::replace(std::span<const Index> cells, Index apex,
     return false;
   if (!match() || (has_walls_ && (!constrain() || !separates_regions())))
     return false;
-  if (!surface_.empty() && !keeps_link())
-    return false;
-  commit(cells);
-  return true;
+  return surface_.empty() || keeps_link();
 }
 
 bool CavityOperator::is_lost(Index u, Index w) const {

@@ -51,6 +51,18 @@ public:
   bool replace(std::span<const Index> cells, Index apex, std::array<Index, 2> lost,
                const Acceptance &acceptance);
 
+  /// The same in two steps, to look at what would come of it: @returns whether the
+  /// result is valid. The mesh changes with commit(), before the next proposal, or not
+  /// at all.
+  [[nodiscard]] bool propose(std::span<const Index> cells, Index apex,
+                             std::array<Index, 2> lost, const Acceptance &acceptance);
+  void commit(std::span<const Index> cells);
+  /// visit({a, b, c, d, e}) for the facets abc of the proposal that are no walls: those
+  /// of its cells and those that it brings together, between the cell abcd and e.
+  template <class Visit> void for_new_facets(Visit visit) const;
+  /// visit(quality, cell) for its cells, which have numbers once it is committed.
+  template <class Visit> void for_new_cells(Visit visit) const;
+
 private:
   enum class Kind : std::uint8_t {
     base,    ///< a new cell will stand on it
@@ -116,8 +128,41 @@ private:
   [[nodiscard]] Index local_index(Index v);
   [[nodiscard]] Index region_at(const Port &port) const;
   [[nodiscard]] HalfFacet half_of(const Port &port) const;
-  void commit(std::span<const Index> cells);
+  /// The vertex of the cell at a port that its facet does not contain.
+  [[nodiscard]] Index vertex_off(const Port &port) const {
+    const Outer &outer = outers_[static_cast<std::size_t>(port.outer)];
+    return outer.kind == Kind::base ? outer.v[port.slot]
+                                    : volume_.mesh.apex(outer.beyond);
+  }
   void join_pairs();
 };
+
+template <class Visit> void CavityOperator::for_new_cells(Visit visit) const {
+  for (const Outer &outer : outers_)
+    if (outer.kind == Kind::base)
+      visit(static_cast<double>(outer.quality), outer.cell);
+}
+
+template <class Visit> void CavityOperator::for_new_facets(Visit visit) const {
+  for (const Outer &outer : outers_)
+    if (outer.kind == Kind::base && outer.constraint == none && outer.beyond.exists())
+      visit(std::array<Index, 5>{outer.v[0], outer.v[1], outer.v[2], apex_,
+                                 volume_.mesh.apex(outer.beyond)});
+  const auto has_cell = [](const Outer &outer) {
+    return outer.kind == Kind::base || outer.beyond.exists();
+  };
+  for (const Pair &pair : pairs_) {
+    const Outer &outer = outers_[static_cast<std::size_t>(pair.one.outer)],
+                &other = outers_[static_cast<std::size_t>(pair.other.outer)];
+    if (pair.constraint != none || !has_cell(outer) || !has_cell(other))
+      continue;
+    const Facet<3> t =
+        outer.kind == Kind::base
+            ? facet_of<3>({outer.v[0], outer.v[1], outer.v[2], apex_}, pair.one.slot)
+            : volume_.mesh.facet(outer.beyond);
+    visit(std::array<Index, 5>{t[0], t[1], t[2], vertex_off(pair.one),
+                               vertex_off(pair.other)});
+  }
+}
 
 } // namespace anistar

@@ -39,11 +39,11 @@ public:
   }
 
   /// One point for each bad cell that shares no vertex with one treated before, of the
-  /// first rule that can place any. @returns that rule, `none` when no rule can.
+  /// first rule that can place any. @returns that rule, `kept` when no rule can.
   Rule treat(const std::vector<BadCell<2>> &bad, int round) {
     std::vector<bool> touched(mesh_.vertices.size(), false);
     const std::size_t before = mesh_.vertices.size();
-    Rule acting = Rule::none;
+    Rule acting = Rule::kept;
     for (const BadCell<2> &item : bad) {
       if (item.rule != acting && mesh_.vertices.size() > before)
         break;
@@ -56,7 +56,7 @@ public:
         touched[static_cast<std::size_t>(v)] = true;
       insert_for(item, round);
     }
-    return mesh_.vertices.size() > before ? acting : Rule::none;
+    return mesh_.vertices.size() > before ? acting : Rule::kept;
   }
 
 private:
@@ -228,7 +228,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
       break;
     // in the pure mode rules 1 to 3 end by packing, and only rule 4 can stall
     const Rule rule = rounds.treat(bad, counts.rounds);
-    since_best += relocate || rule == Rule::inconsistency || rule == Rule::none;
+    since_best += relocate || rule == Rule::inconsistency || rule == Rule::kept;
     // while failures are everywhere, moving vertices helps little for what it costs
     const double failing = failing_fraction(check.bits);
     const bool moving =

@@ -25,7 +25,7 @@ struct ConsistencyParameters {
 /// alone and applies nothing but the rules of the paper.
 enum class ConsistencyMode { off, on, pure };
 
-enum class Rule : std::uint8_t { none, size, radius_edge, sliver, inconsistency };
+enum class Rule { kept, size, radius_edge, sliver, inconsistency };
 
 struct ConsistencyCounts {
   std::size_t size = 0, radius_edge = 0, sliver = 0, inconsistency = 0;
@@ -47,7 +47,7 @@ struct ConsistencyCounts {
     case Rule::inconsistency:
       ++inconsistency;
       break;
-    case Rule::none:
+    case Rule::kept:
       break;
     }
   }
@@ -70,12 +70,12 @@ template <std::size_t d, class Size>
                                const ConsistencyParameters &parameters, bool everywhere,
                                Size size_at) {
   const Cell<d> &cell = mesh.at(c);
-  BadCell<d> out{c, cell, Rule::none, none};
+  BadCell<d> out{c, cell, Rule::kept, none};
   if (bits == all_vertices<d> && !everywhere)
     return out;
   const Simplex<d> s = mesh.simplex(c);
   const auto worsen = [&](Rule rule, Index star) {
-    if (out.rule == Rule::none || rule < out.rule) {
+    if (out.rule == Rule::kept || rule < out.rule) {
       out.rule = rule;
       out.star = star;
     }
@@ -111,7 +111,7 @@ bad_cells(const Triangulation<d> &mesh, const std::vector<std::uint8_t> &bits,
       continue;
     const BadCell<d> found =
         judge(mesh, static_cast<Index>(c), bits[c], parameters, everywhere, size_at);
-    if (found.rule != Rule::none)
+    if (found.rule != Rule::kept)
       bad.push_back(found);
   }
   std::stable_sort(

@@ -1,6 +1,7 @@
 #pragma once
 // remesh: a mesh, a metric field, and a geometry in; a mesh with unit edges out.
 
+#include "agreement_mode.h"
 #include "consistency.h"
 #include "curves.h"
 #include "monitor.h"
@@ -12,9 +13,6 @@
 
 namespace anistar {
 
-/// Whether vertices are moved until the stars agree. `when_possible` asks the metric:
-/// it must not vary too fast from vertex to vertex.
-enum class AgreementMode { off, when_possible, on };
 
 struct RemeshSettings {
   ConsistencyMode consistency = ConsistencyMode::off;

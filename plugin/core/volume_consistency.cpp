@@ -2,40 +2,49 @@
 
 #include "bounded_distortion.h"
 #include "ellipse_sampler.h"
-#include "volume_insertion.h"
+#include "vertex_mover.h"
 
 #include <optional>
+#include <utility>
 
 namespace anistar {
 namespace {
 
-constexpr int max_rounds = 80;
+constexpr int max_rounds = 200;
 /// Rounds without fewer failing cells after which the run has stalled.
-constexpr int patience = 12;
-/// A point may make so many more facets disagree: none at first, then one more with
-/// every round that brings nothing.
-constexpr int first_allowance = -1, last_allowance = 2;
-/// Of the new cells; below it they must be better than the worst that they replace.
-constexpr double quality_floor = .3;
+constexpr int patience = 16;
+/// While a round leaves less than this part of the failing cells, vertices are moved
+/// wherever the cost goes down; then only where fewer facets fail, and points come in.
+constexpr double good_progress = .95;
+/// New vertices keep this distance from the others in their own metric (packing).
+constexpr double separation = .4;
 /// Edges of encroached facets that are shorter than this are not split.
 constexpr double shortest_split = .8;
 /// Points of an edge that are tried, within this part of it about its middle.
 constexpr int edge_candidates = 5;
 constexpr double edge_part = .3;
 
-/// What a point is inserted by.
-struct Pick {
-  PointScore score;
-  Vertex<3> p{};
-  Index cell = none, background = none;
+/// How hard a round tries.
+struct Effort {
+  bool inserts_early; ///< before vertices are moved without fewer failing facets
+  bool is_stuck;      ///< walls that cannot be split are no obstacle any more
+  int trials;         ///< places for a vertex at each distance
+  int allowance;      ///< a point may make so many more facets fail
 };
+
+/// By the number of rounds without fewer failing cells.
+[[nodiscard]] Effort effort_after(int since_best, bool is_slow) {
+  const bool is_stuck = since_best > 3;
+  return {is_slow, is_stuck, is_stuck ? 10 : 3, std::min(-1 + since_best / 4, 2)};
+}
 
 class Rounds {
 public:
   Rounds(Volume &volume, Monitor &monitor, const ConsistencyParameters &parameters,
          std::uint64_t seed, ConsistencyCounts &counts)
       : volume_(volume), mesh_(volume.mesh), monitor_(monitor), parameters_(parameters),
-        seed_(seed), operator_(volume), insertion_(volume), counts_(counts) {}
+        seed_(seed), operator_(volume), insertion_(volume),
+        mover_(volume, insertion_, operator_, parameters.sigma_0), counts_(counts) {}
 
   [[nodiscard]] std::vector<BadCell<3>>
   bad_cells(const std::vector<std::uint8_t> &bits) const {
@@ -47,24 +56,19 @@ public:
         });
   }
 
-  /// One point for each bad cell that shares no vertex with one treated before.
-  /// @returns how many were inserted.
-  std::size_t treat(const std::vector<BadCell<3>> &bad, int round, int allowance) {
+  /// One change for each bad cell that shares no vertex with one treated before.
+  void treat(const std::vector<BadCell<3>> &bad, int round, const Effort &effort) {
     touched_.assign(mesh_.vertices.size(), 0);
-    allowance_ = allowance;
-    std::size_t n = 0;
-    for (std::size_t k = 0; k < bad.size(); ++k) {
-      const BadCell<3> &item = bad[k];
+    effort_ = effort;
+    for (const BadCell<3> &item : bad) {
       if (!monitor_.keep_going(volume_.n_vertices(),
                                static_cast<double>(round) / max_rounds))
-        break;
-      if (mesh_.at(item.cell) != item.vertices ||
-          std::any_of(item.vertices.begin(), item.vertices.end(),
-                      [&](Index v) { return is_touched(v); }))
-        continue;
-      n += insert_for(item, round);
+        return;
+      if (mesh_.at(item.cell) == item.vertices &&
+          std::none_of(item.vertices.begin(), item.vertices.end(),
+                       [&](Index v) { return is_touched(v); }))
+        treat(item, round);
     }
-    return n;
   }
 
 private:
@@ -75,79 +79,120 @@ private:
   std::uint64_t seed_;
   CavityOperator operator_;
   VolumeInsertion insertion_;
+  VertexMover mover_;
   ConsistencyCounts &counts_;
-  std::vector<std::uint8_t> touched_; ///< vertices at new points of this round
-  int allowance_ = first_allowance;
+  std::vector<std::uint8_t> touched_; ///< vertices where this round has made a change
+  Effort effort_{};
   Shell shell_;
 
   [[nodiscard]] bool is_touched(Index v) const {
     const auto i = static_cast<std::size_t>(v);
     return i >= touched_.size() || touched_[i] != 0;
   }
-  void touch(std::span<const Index> cells) {
+  void touch_link() {
     touched_.resize(mesh_.vertices.size(), 1);
-    for (Index c : cells)
-      for (Index v : mesh_.at(c))
+    for (Index v : insertion_.link())
+      touched_[static_cast<std::size_t>(v)] = 1;
+  }
+
+  void treat(const BadCell<3> &item, int round) {
+    if (!effort_.inserts_early) {
+      if (!move_any(item, round, 0))
+        (void)insert_for(item, round);
+    } else if (!move_any(item, round, -1) && !insert_for(item, round)) {
+      (void)move_any(item, round, 0);
+    }
+  }
+
+  /// Moves one of the vertices of a bad cell, or of those across its facets.
+  bool move_any(const BadCell<3> &item, int round, int most_failing) {
+    std::array<Index, 8> vertices;
+    std::size_t n = 0;
+    for (Index v : item.vertices)
+      vertices[n++] = v;
+    for (std::size_t i = 0; i < 4; ++i)
+      if (const HalfFacet beyond = mesh_.opposite(HalfFacet(item.cell, i));
+          beyond.exists() && !is_touched(mesh_.apex(beyond)))
+        vertices[n++] = mesh_.apex(beyond);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Index v = vertices[k];
+      CounterRandom random(seed_ + 3, static_cast<std::uint64_t>(v),
+                           static_cast<std::uint64_t>(round));
+      if (mover_.move(v, {effort_.trials, most_failing}, random)) {
         touched_[static_cast<std::size_t>(v)] = 1;
+        touch_link();
+        return true;
+      }
+    }
+    return false;
   }
 
   /// Pick_valid (Algorithm 3) and Insert (Algorithm 1), or the split of a wall that the
-  /// point encroaches upon. The circumcentre itself is tried first, then points of the
-  /// picking region.
+  /// point encroaches upon.
   bool insert_for(const BadCell<3> &item, int round) {
-    const Vertex<3> star = mesh_.vertex(item.star);
-    const Circumsphere<3> ball = circumsphere<3>(star.M, mesh_.simplex(item.cell));
-    const EllipseSampler<3> ellipse(star.M);
+    if (!monitor_.has_room(volume_.n_vertices()))
+      return false;
+    HalfFacet wall;
+    const ScoredPoint best = pick_valid(item, round, wall);
+    if (best.seed == none || effort_.is_stuck)
+      if (wall.exists() && split(wall))
+        return true;
+    if (best.seed == none || best.score.failing > effort_.allowance ||
+        !insertion_.gather(best.p, std::array{best.seed}, {separation}))
+      return false;
+    const Index v =
+        volume_.add_vertex(best.p, Triangulation<3>::interior, none, best.background);
+    if (!enter(v, {none, none}))
+      return false;
+    counts_.add(item.rule);
+    return true;
+  }
+
+  /// The best of the circumcentre and random points of the picking region.
+  /// @param wall a constrained facet that one of them encroaches upon
+  [[nodiscard]] ScoredPoint pick_valid(const BadCell<3> &item, int round,
+                                       HalfFacet &wall) {
+    const SymmetricTensor<3> M = mesh_.vertex(item.star).M;
+    const Circumsphere<3> ball = circumsphere<3>(M, mesh_.simplex(item.cell));
+    const EllipseSampler<3> ellipse(M);
     CounterRandom random(seed_ + 2, static_cast<std::uint64_t>(item.cell),
                          static_cast<std::uint64_t>(round));
-    Pick best;
-    HalfFacet wall;
+    ScoredPoint best;
     for (int k = 0; k < parameters_.candidates; ++k) {
       Vector<3> x = ball.centre;
       if (k > 0)
         x += ellipse.step(parameters_.delta * ball.radius, random);
       const VolumeWalk at = walk_to(mesh_, item.cell, x);
-      if (at.cell == none) {
-        wall = at.wall.exists() ? at.wall : wall;
+      if (at.wall.exists())
+        wall = at.wall;
+      if (at.cell == none)
         continue;
-      }
-      Pick found{
+      ScoredPoint found{
           {}, {}, at.cell, mesh_.background_cell[static_cast<std::size_t>(item.star)]};
       found.p = volume_.background.vertex(x, found.background);
-      if (!insertion_.gather(found.p, std::array{at.cell}, {none, none}, quality_floor))
+      if (!insertion_.gather(found.p, std::array{at.cell}, {separation}))
         continue;
       if (const HalfFacet near = insertion_.encroached(); near.exists()) {
         wall = near;
-        continue;
+        if (!effort_.is_stuck)
+          continue;
       }
       found.score =
           insertion_.score(parameters_.sigma_0, parameters_.beta * ball.radius);
       if (found.score.is_better(best.score))
         best = found;
     }
-    if (best.cell == none)
-      return wall.exists() && split(wall);
-    if (best.score.change > allowance_ || !insert(best))
-      return false;
-    counts_.add(item.rule);
-    return true;
-  }
-
-  bool insert(const Pick &pick) {
-    if (!insertion_.gather(pick.p, std::array{pick.cell}, {none, none}, quality_floor))
-      return false;
-    const Index v =
-        volume_.add_vertex(pick.p, Triangulation<3>::interior, none, pick.background);
-    return enter(v, {none, none});
+    return best;
   }
 
   /// Replaces the cavity that was gathered by the star of a new vertex.
   bool enter(Index v, std::array<Index, 2> lost) {
-    touch(insertion_.cells());
-    if (operator_.replace(insertion_.cells(), v, lost, {quality_floor}))
-      return true;
-    volume_.remove_vertex(v);
-    return false;
+    if (!operator_.replace(insertion_.cells(), v, lost, {quality_floor})) {
+      volume_.remove_vertex(v);
+      return false;
+    }
+    touch_link();
+    return true;
   }
 
   /// Splits the longest edge of a wall, at the best of some of its points.
@@ -168,9 +213,9 @@ private:
     const EdgeFeature feature = feature_of(volume_, shell_);
     if (feature.is_frozen)
       return false;
-    const Pick best = best_on_edge(feature);
-    if (best.cell == none || best.score.change > allowance_ ||
-        !insertion_.gather(best.p, shell_.all(), {a, b}, quality_floor))
+    const ScoredPoint best = best_on_edge(feature);
+    if (best.seed == none || best.score.failing > effort_.allowance ||
+        !insertion_.gather(best.p, shell_.all(), {separation, {a, b}}))
       return false;
     const Index v =
         volume_.add_vertex(best.p, feature.dimension, feature.lies_on, best.background);
@@ -182,20 +227,19 @@ private:
     return true;
   }
 
-  [[nodiscard]] Pick best_on_edge(const EdgeFeature &feature) {
+  [[nodiscard]] ScoredPoint best_on_edge(const EdgeFeature &feature) {
     const Vector<3> &a = mesh_.vertex(shell_.a).x, &b = mesh_.vertex(shell_.b).x;
-    Pick best;
+    ScoredPoint best;
     for (int k = 0; k < edge_candidates; ++k) {
       const double s = .5 + edge_part * (double(k) / (edge_candidates - 1) - .5);
-      Pick found{{},
-                 {},
-                 shell_.cells[0],
-                 mesh_.background_cell[static_cast<std::size_t>(shell_.a)]};
+      ScoredPoint found{{},
+                        {},
+                        shell_.cells[0],
+                        mesh_.background_cell[static_cast<std::size_t>(shell_.a)]};
       found.p = volume_.background.vertex(
           volume_.surface.place(feature.dimension, feature.lies_on, a + s * (b - a)),
           found.background);
-      if (!insertion_.gather(found.p, shell_.all(), {shell_.a, shell_.b},
-                             quality_floor))
+      if (!insertion_.gather(found.p, shell_.all(), {separation, {shell_.a, shell_.b}}))
         continue;
       found.score = insertion_.score(parameters_.sigma_0,
                                      std::numeric_limits<double>::infinity());
@@ -249,29 +293,16 @@ void renew(const Volume &volume, std::uint32_t since, int threads,
 ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
                                           const ConsistencyParameters &parameters,
                                           std::uint64_t seed, int threads,
-                                          bool relocate, DelaunayBits &known) {
-  (void)relocate;
+                                          DelaunayBits &known) {
   ConsistencyCounts counts;
   Rounds rounds(volume, monitor, parameters, seed, counts);
   const double most =
       (1 + parameters.max_growth) * static_cast<double>(volume.n_vertices());
-  std::optional<Snapshot> best(
-      Snapshot{volume, known, failing_fraction(volume.mesh, known.bits)});
-  int since_best = 0, allowance = first_allowance;
+  double failing = failing_fraction(volume.mesh, known.bits), before = 1;
+  std::optional<Snapshot> best(Snapshot{volume, known, failing});
+  int since_best = 0;
   for (counts.rounds = 0;; ++counts.rounds) {
     const std::vector<BadCell<3>> bad = rounds.bad_cells(known.bits);
-    const double failing = failing_fraction(volume.mesh, known.bits);
-    if (getenv("UC3"))
-      fprintf(stderr, "round %d: nv %zu failing %.5f bad %zu allowance %d\n",
-              counts.rounds, volume.n_vertices(), failing, bad.size(), allowance);
-    if (failing < best->failing) {
-      best.emplace(Snapshot{volume, known, failing});
-      since_best = 0;
-      allowance = first_allowance;
-    } else if (counts.rounds > 0) {
-      ++since_best;
-      allowance = std::min(allowance + 1, last_allowance);
-    }
     if (bad.empty())
       counts.stop = "consistent";
     else if (counts.rounds == max_rounds)
@@ -286,10 +317,19 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
     if (!counts.stop.empty())
       break;
     const std::uint32_t since = ++volume.clock;
-    (void)rounds.treat(bad, counts.rounds, allowance);
+    rounds.treat(bad, counts.rounds,
+                 effort_after(since_best, failing > good_progress * before));
     renew(volume, since, threads, known);
+    before = std::exchange(failing, failing_fraction(volume.mesh, known.bits));
+    fprintf(stderr, "round %d nv %zu failing %.5f %zu best %d\n", counts.rounds,
+            volume.n_vertices(), failing, bad.size(), since_best);
+    ++since_best;
+    if (failing < best->failing) {
+      best.emplace(Snapshot{volume, known, failing});
+      since_best = 0;
+    }
   }
-  if (failing_fraction(volume.mesh, known.bits) > best->failing) {
+  if (failing > best->failing) {
     restore(volume, std::move(best->volume));
     known = std::move(best->known);
   }

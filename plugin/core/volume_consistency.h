@@ -8,21 +8,23 @@
 
 namespace anistar {
 
-/// Inserts points by the rules in their order until every star is Delaunay in its own
-/// metric. With `relocate`, vertices are moved for agreement after every round of
-/// insertions.
+/// Inserts points by the rules in their order, and moves vertices, until every star is
+/// Delaunay in its own metric.
 ///
-/// Differs from [1] as refine_until_consistent in 2D does, and in two more ways. A
-/// round treats bad cells of all rules, the first rule first. A point enters only if it
-/// does not make more facets on which metrics disagree than an allowance that grows
-/// while rounds bring nothing.
+/// Differs from [1]: one valid mesh is kept instead of the star set; the simplices of
+/// the star S_v are the cells that are Delaunay in M_v. Pick_valid takes the best of a
+/// bounded number of points: the fewest slivers, then the lowest AgreementCost. A round
+/// treats bad cells of all rules, the first rule first, that share no vertex. At each
+/// of them a vertex is moved if that makes fewer facets fail, else a point is inserted
+/// that does; what is stuck is tried harder. When it does not end consistent, the best
+/// mesh seen is left.
 ///
-/// @param known the answers for the mesh, which has no free cells; for the mesh that is
-/// left afterwards
+/// @param known the answers for the mesh, which has no free cells; afterwards for the
+/// mesh that is left
 [[nodiscard]] ConsistencyCounts
 refine_until_consistent(Volume &volume, Monitor &monitor,
                         const ConsistencyParameters &parameters, std::uint64_t seed,
-                        int threads, bool relocate, DelaunayBits &known);
+                        int threads, DelaunayBits &known);
 
 /// The mesh as the certificate sees it.
 [[nodiscard]] inline CertifiedMesh<3> certified(const Triangulation<3> &mesh) {

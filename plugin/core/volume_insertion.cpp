@@ -1,6 +1,6 @@
 #include "volume_insertion.h"
 
-#include "facet_agreement.h"
+#include <tuple>
 
 namespace anistar {
 namespace {
@@ -8,8 +8,6 @@ namespace {
 constexpr int max_walk_steps = 200;
 /// Larger cavities belong to metrics that no mesh nearby fits.
 constexpr std::size_t max_cells = 96;
-/// New vertices keep this distance from the others in their own metric (packing).
-constexpr double separation = .4;
 
 } // namespace
 
@@ -54,11 +52,13 @@ EdgeFeature feature_of(const Volume &volume, const Shell &shell) {
   return out;
 }
 
-bool VolumeInsertion::is_lost(const Facet<3> &facet) const {
+/// Whether the point will lie in the plane of a facet: it moves a vertex of it, or
+/// splits an edge.
+bool VolumeInsertion::holds(const Facet<3> &facet) const {
   const auto has = [&](Index v) {
-    return facet[0] == v || facet[1] == v || facet[2] == v;
+    return v != none && (facet[0] == v || facet[1] == v || facet[2] == v);
   };
-  return lost_[0] != none && has(lost_[0]) && has(lost_[1]);
+  return has(rule_.vertex) || (has(rule_.lost[0]) && has(rule_.lost[1]));
 }
 
 void VolumeInsertion::open() {
@@ -72,15 +72,15 @@ void VolumeInsertion::open() {
 }
 
 bool VolumeInsertion::gather(const Vertex<3> &p, std::span<const Index> seeds,
-                             std::array<Index, 2> lost, double floor) {
+                             const EntryRule &rule) {
   p_ = p;
-  lost_ = lost;
+  rule_ = rule;
   open();
   cells_.assign(seeds.begin(), seeds.end());
   for (Index c : cells_)
     stamp_[static_cast<std::size_t>(c)] = epoch_;
   grow();
-  if (cells_.size() > max_cells || !shrink(seeds.size(), floor))
+  if (cells_.size() > max_cells || !shrink(seeds.size()))
     return false;
   bound();
   return keeps_vertices();
@@ -101,7 +101,7 @@ void VolumeInsertion::grow() {
 
 /// Gives cells back whose outer facets do not see the point well enough: where the
 /// metric of the point is not that of the cells, its cavity need not be star-shaped.
-bool VolumeInsertion::shrink(std::size_t n_seeds, double floor) {
+bool VolumeInsertion::shrink(std::size_t n_seeds) {
   const Triangulation<3> &mesh = volume_.mesh;
   const auto sees = [&](Index c) {
     for (std::size_t i = 0; i < 4; ++i) {
@@ -109,8 +109,8 @@ bool VolumeInsertion::shrink(std::size_t n_seeds, double floor) {
       if (beyond.exists() && contains(beyond.cell()))
         continue;
       const Facet<3> t = mesh.facet(h);
-      if (!is_lost(t) && shape_quality(mesh.vertex(t[0]), mesh.vertex(t[1]),
-                                       mesh.vertex(t[2]), p_) < floor)
+      if (!holds(t) && shape_quality(mesh.vertex(t[0]), mesh.vertex(t[1]),
+                                     mesh.vertex(t[2]), p_) < quality_floor)
         return false;
     }
     return true;
@@ -138,19 +138,24 @@ void VolumeInsertion::bound() {
       const HalfFacet h(c, i), beyond = mesh.opposite(h);
       if (beyond.exists() && contains(beyond.cell()))
         continue;
-      if (const Facet<3> t = mesh.facet(h); beyond.exists() || !is_lost(t))
+      if (const Facet<3> t = mesh.facet(h); !holds(t))
         outers_.push_back({h, t});
     }
 }
 
 bool VolumeInsertion::keeps_vertices() {
+  link_.clear();
   volume_.open_vertices();
+  if (rule_.vertex != none)
+    volume_.mark_vertex(rule_.vertex);
   for (const Outer &outer : outers_)
     for (Index v : outer.v)
-      if (volume_.mark_vertex(v) &&
-          quadratic<3>(p_.M, Vector<3>(volume_.mesh.vertex(v).x - p_.x)) <
-              separation * separation)
-        return false;
+      if (volume_.mark_vertex(v)) {
+        link_.push_back(v);
+        if (quadratic<3>(p_.M, Vector<3>(volume_.mesh.vertex(v).x - p_.x)) <
+            rule_.closest * rule_.closest)
+          return false;
+      }
   for (Index c : cells_)
     for (Index v : volume_.mesh.at(c))
       if (!volume_.is_marked_vertex(v))
@@ -179,33 +184,34 @@ HalfFacet VolumeInsertion::encroached() const {
   return {};
 }
 
-int VolumeInsertion::disagreeing_before() const {
+AgreementCost VolumeInsertion::cost_before() const {
   const Triangulation<3> &mesh = volume_.mesh;
-  int n = 0;
-  for (Index c : cells_)
+  AgreementCost cost;
+  for (Index c : cells_) {
+    cost.add_cell(volume_.quality_of(c));
     for (std::size_t i = 0; i < 4; ++i) {
       const HalfFacet h(c, i), beyond = mesh.opposite(h);
-      if (!beyond.exists() || mesh.constraint(h) != none ||
-          (contains(beyond.cell()) && beyond.cell() < c))
-        continue;
-      const Facet<3> t = mesh.facet(h);
-      n += metrics_disagree(mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]),
-                            mesh.vertex(mesh.apex(h)), mesh.vertex(mesh.apex(beyond)));
+      if (beyond.exists() && mesh.constraint(h) == none &&
+          !(contains(beyond.cell()) && beyond.cell() < c))
+        cost.add_facet(facet_margin(facet_star(mesh, h)));
     }
-  return n;
+  }
+  return cost;
 }
 
-/// Facets of the boundary of the cavity, and those between two new cells.
-int VolumeInsertion::disagreeing_after() {
+/// Of the new cells, the facets below them and those between two of them.
+AgreementCost VolumeInsertion::cost_after() {
   const Triangulation<3> &mesh = volume_.mesh;
-  int n = 0;
+  AgreementCost cost;
   spokes_.clear();
   for (std::size_t k = 0; k < outers_.size(); ++k) {
     const auto &[facet, t] = outers_[k];
+    const Vertex<3> &a = mesh.vertex(t[0]), &b = mesh.vertex(t[1]),
+                    &c = mesh.vertex(t[2]);
+    cost.add_cell(shape_quality(a, b, c, p_));
     if (const HalfFacet beyond = mesh.opposite(facet);
         beyond.exists() && mesh.constraint(facet) == none)
-      n += metrics_disagree(mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]), p_,
-                            mesh.vertex(mesh.apex(beyond)));
+      cost.add_facet(facet_margin({&a, &b, &c, &p_, &mesh.vertex(mesh.apex(beyond))}));
     for (std::size_t i = 0; i < 3; ++i) {
       const Index u = t[(i + 1) % 3], w = t[(i + 2) % 3];
       spokes_.push_back({std::min(u, w), std::max(u, w), t[i], static_cast<Index>(k)});
@@ -219,10 +225,10 @@ int VolumeInsertion::disagreeing_after() {
     if (one.low != other.low || one.high != other.high)
       continue;
     const auto &t = outers_[static_cast<std::size_t>(one.base)].v;
-    n += metrics_disagree(mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]), p_,
-                          mesh.vertex(other.apex));
+    cost.add_facet(facet_margin({&mesh.vertex(t[0]), &mesh.vertex(t[1]),
+                                 &mesh.vertex(t[2]), &p_, &mesh.vertex(other.apex)}));
   }
-  return n;
+  return cost;
 }
 
 bool VolumeInsertion::is_sliver(const Outer &outer, double sigma_0,
@@ -236,14 +242,10 @@ bool VolumeInsertion::is_sliver(const Outer &outer, double sigma_0,
 }
 
 PointScore VolumeInsertion::score(double sigma_0, double radius) {
-  const Triangulation<3> &mesh = volume_.mesh;
-  PointScore out{0, disagreeing_after() - disagreeing_before(), 1};
-  for (const Outer &outer : outers_) {
+  const AgreementCost before = cost_before(), after = cost_after();
+  PointScore out{0, after.failing - before.failing, after.total() - before.total()};
+  for (const Outer &outer : outers_)
     out.slivers += is_sliver(outer, sigma_0, radius);
-    out.quality = std::min(out.quality, shape_quality(mesh.vertex(outer.v[0]),
-                                                      mesh.vertex(outer.v[1]),
-                                                      mesh.vertex(outer.v[2]), p_));
-  }
   return out;
 }
 

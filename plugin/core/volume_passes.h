@@ -32,6 +32,15 @@ struct VertexRule {
   double reinsertion_floor = .5;
 };
 
+/// Whether the facets of surfaces at v keep their side, and stay near curved ones, when
+/// v goes to x.
+[[nodiscard]] bool keeps_surfaces(const Volume &volume, std::span<const Index> star,
+                                  Index v, const Vector<3> &x, double hausdorff_number);
+
+/// Adds to the star of v, marked, the cells whose circumball in the metric of v
+/// contains v, as far as they can be reached without crossing a constrained facet.
+void grow_cavity(Volume &volume, Index v, std::vector<Index> &star);
+
 /// Everything the passes share.
 class VolumePasses {
 public:
@@ -88,9 +97,7 @@ private:
 
   [[nodiscard]] bool may_collapse(Index v, Index u) const;
   [[nodiscard]] bool follows_curve(Index v, Index u) const;
-  [[nodiscard]] bool has_ridge(const Cell<3> &cell) const;
   void note_surface_neighbours(Index v);
-  [[nodiscard]] bool keeps_surfaces(Index v, const Vector<3> &x) const;
   [[nodiscard]] bool collapse(Index v, Index u, const Acceptance &acceptance);
   [[nodiscard]] bool collapse_shortest(Index v, const VertexRule &rule);
   [[nodiscard]] double star_quality() const;

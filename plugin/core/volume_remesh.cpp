@@ -1,6 +1,8 @@
 #include "volume_remesh.h"
 
+#include "certify.h"
 #include "stopwatch.h"
+#include "volume_agreement.h"
 #include "volume_consistency.h"
 
 namespace anistar {
@@ -18,6 +20,10 @@ constexpr double step_is_dry = .02, growth_is_dry = .03;
 constexpr double growth_between_sorts = 1.6;
 /// Sweeps over the whole mesh at its final size.
 constexpr int n_sweeps = 3;
+
+/// Agreement certified nearly all cells on every metric tried whose ln gamma stays
+/// below this on 90 % of the edges.
+constexpr double largest_agreeing_distortion = .2;
 
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
 void grow(Volume &volume, VolumePasses &passes) {
@@ -61,6 +67,50 @@ void shape(VolumePasses &passes) {
   passes.swap(.7);
 }
 
+/// Why there will be no agreement; empty when there will be.
+std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
+                           const VolumeSettings &settings) {
+  if (settings.agreement == AgreementMode::off)
+    return "off";
+  if (monitor.reason() != StopReason::finished)
+    // the cells of a mesh that is not refined can reach across the whole domain
+    return std::string("skipped: stopped by ") + name_of(monitor.reason());
+  if (settings.agreement == AgreementMode::on)
+    return "";
+  const double p90 =
+      distortion_quantiles(volume.mesh.vertices, volume.mesh.cells, settings.threads)
+          .p90;
+  return p90 <= largest_agreeing_distortion
+             ? ""
+             : "skipped: the metric varies too fast, ln gamma of 10 % of the edges is "
+               "above " +
+                   std::to_string(p90) + " where " +
+                   std::to_string(largest_agreeing_distortion) + " is allowed";
+}
+
+/// Phase 4, as far as the metric and the settings let it. @pre the mesh was renumbered.
+void agree(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
+           VolumeResult &out) {
+  out.agreement = reason_to_skip(volume, monitor, settings);
+  if (!out.agreement.empty())
+    return;
+  const VolumeAgreementCounts agreed =
+      agree_volume(volume, monitor, settings.hausdorff_number, settings.seed);
+  renumber(volume);
+  out.agreement = "done";
+  for (const auto &[name, value] :
+       {std::pair{"disagreeing_before", agreed.facets_before},
+        {"disagreeing_after", agreed.facets_after},
+        {"trials", agreed.trials},
+        {"relocations", agreed.moves},
+        {"agreement_swaps", agreed.swaps},
+        {"agreement_insertions", agreed.reinsertions},
+        {"agreement_repairs", agreed.repairs},
+        {"polishes", agreed.polishes},
+        {"agreement_rounds", static_cast<std::size_t>(agreed.rounds)}})
+    out.counts[name] = static_cast<double>(value);
+}
+
 void extract_facets(const Volume &volume, VolumeResult &out) {
   const Triangulation<3> &mesh = volume.mesh;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -83,24 +133,24 @@ void extract_facets(const Volume &volume, VolumeResult &out) {
   }
 }
 
-/// Phases 5 and 6, unless a budget has been spent: the cells of a mesh that is not
-/// refined can reach across the whole domain.
-void make_consistent(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
-                     Stopwatch &watch, VolumeResult &out) {
-  if (settings.consistency == ConsistencyMode::off)
+/// Phases 5 and 6, unless a budget has been spent. @pre the mesh was renumbered.
+void certify_stars(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
+                   Stopwatch &watch, VolumeResult &out) {
+  const bool inserting = settings.consistency != ConsistencyMode::off;
+  if (monitor.reason() != StopReason::finished ||
+      (settings.agreement == AgreementMode::off && !inserting))
     return;
-  if (monitor.reason() != StopReason::finished) {
-    out.consistency.stop = name_of(monitor.reason());
-    return;
-  }
   watch.phase("certificate");
   DelaunayBits known = delaunay_bits<3>(certified(volume.mesh), settings.threads);
-  watch.phase("consistency");
-  out.consistency =
-      refine_until_consistent(volume, monitor, settings.parameters, settings.seed,
-                              settings.threads, false, known);
+  if (inserting) {
+    watch.phase("consistency");
+    out.consistency = refine_until_consistent(volume, monitor, settings.parameters,
+                                              settings.seed, settings.threads, known);
+  }
+  const CertifiedFractions fractions = certified_fractions(volume.mesh, known.bits);
   out.was_checked = true;
-  out.certified = certified_fractions(volume.mesh, known.bits);
+  out.simplex_ok = fractions.simplex_ok;
+  out.star_ok = fractions.star_ok;
   renumber(volume);
 }
 
@@ -124,8 +174,9 @@ VolumeResult remesh_volume(const VolumeInput &input,
   watch.phase("shape");
   shape(passes);
   renumber(volume);
-  if (!passes.is_full())
-    make_consistent(volume, monitor, settings, watch, out);
+  watch.phase("agreement");
+  agree(volume, monitor, settings, out);
+  certify_stars(volume, monitor, settings, watch, out);
 
   watch.phase("report");
   extract_facets(volume, out);

@@ -1,6 +1,7 @@
 #pragma once
 // remesh in 3D: a mesh, a metric field and a geometry in; a mesh with unit edges out.
 
+#include "agreement_mode.h"
 #include "consistency_rules.h"
 #include "statistics.h"
 #include "volume_passes.h"
@@ -12,6 +13,7 @@ struct VolumeSettings {
   double hausdorff_number = .1; ///< of an edge, relative to its length
   std::size_t max_vertices = static_cast<std::size_t>(-1);
   double max_seconds = std::numeric_limits<double>::infinity();
+  AgreementMode agreement = AgreementMode::when_possible;
   std::uint64_t seed = 0;
   int threads = 1; ///< for the certificate and the report; the passes are serial
   ConsistencyMode consistency = ConsistencyMode::off;
@@ -29,8 +31,9 @@ struct VolumeResult {
   std::vector<Index> edge_tags;
   Statistics statistics;
   DistortionQuantiles distortion;
-  bool was_checked = false; ///< the certified fractions are known
-  CertifiedFractions certified;
+  bool was_checked = false;           ///< the certified fractions are known
+  double simplex_ok = 0, star_ok = 0; ///< certified fractions
+  std::string agreement;              ///< done, or why not
   ConsistencyCounts consistency;
   std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase

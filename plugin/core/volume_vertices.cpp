@@ -166,45 +166,14 @@ Vector<3> VolumePasses::ideal_step(Index v, const Matrix<3> &L, double &worst,
   return weight > 0 ? Vector<3>(step / weight) : Vector<3>(Vector<3>::Zero());
 }
 
-/// Whether the facets of surfaces at v keep their side, and stay near curved ones, when
-/// v goes to x. @pre star_ is the star of v.
-bool VolumePasses::keeps_surfaces(Index v, const Vector<3> &x) const {
-  const Triangulation<3> &mesh = volume_.mesh;
-  const Vector<3> &from = mesh.vertex(v).x;
-  for (Index c : star_) {
-    if (!volume_.is_walled(c))
-      continue;
-    const std::size_t at = mesh.local_index(c, v);
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Index k = i == at ? none : mesh.constraint(HalfFacet(c, i));
-      if (k == none)
-        continue;
-      std::array<Index, 2> ends{none, none}; // of the facet, besides v
-      for (std::size_t j = 0; j < 4; ++j)
-        if (j != i && j != at)
-          ends[ends[0] == none ? 0 : 1] = mesh.at(c)[j];
-      const Vector<3> &a = mesh.vertex(ends[0]).x, &b = mesh.vertex(ends[1]).x;
-      const Vector<3> before = (b - a).cross(from - a), after = (b - a).cross(x - a);
-      const Patch &patch = volume_.surface.patch(k);
-      const double cosine = patch.is_planar ? 0 : smallest_facet_cosine;
-      if (!(before.dot(after) > cosine * before.norm() * after.norm()))
-        return false;
-      if (!patch.is_planar && hausdorff_number_ > 0)
-        for (const Vector<3> *end : {&a, &b})
-          if (volume_.surface.deviation(2, k, *end, x) > hausdorff_number_)
-            return false;
-    }
-  }
-  return true;
-}
-
 /// @param step in coordinates of space
 bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double sum) {
   const auto i = static_cast<std::size_t>(v);
   Vertex<3> &here = volume_.mesh.vertices[i];
   const Vector<3> x =
       volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
-  if (volume_.feature(v) != 3 && !keeps_surfaces(v, x))
+  if (volume_.feature(v) != 3 &&
+      !keeps_surfaces(volume_, star_, v, x, hausdorff_number_))
     return false;
   Index at = volume_.mesh.background_cell[i];
   const Vertex<3> moved = volume_.background.vertex(x, at);
@@ -258,45 +227,10 @@ void VolumePasses::move(Index v) {
   (void)try_move(v, in_space(random_radius * y), worst, sum);
 }
 
-/// Whether one of the edges of a cell is a ridge: re-insertion could swallow it.
-bool VolumePasses::has_ridge(const Cell<3> &cell) const {
-  std::array<Index, 4> on{};
-  std::size_t n = 0;
-  for (Index v : cell)
-    if (volume_.feature(v) <= 1)
-      on[n++] = v;
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (volume_.ridges.find(on[i], on[j]) != none)
-        return true;
-  return false;
-}
-
-/// Takes the cells whose circumball in the metric of v contains v into its cavity, as
-/// far as they can be reached without crossing a constrained facet.
 /// @pre star_ is the star of v, marked.
 void VolumePasses::reinsert(Index v, double floor) {
-  const Triangulation<3> &mesh = volume_.mesh;
-  const Vertex<3> &here = mesh.vertex(v);
   const std::size_t n_star = star_.size();
-  for (std::size_t i = 0; i < star_.size(); ++i) {
-    const Index c = star_[i];
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (i < n_star && mesh.at(c)[k] != v)
-        continue;
-      const HalfFacet h(c, k), beyond = mesh.opposite(h);
-      if (!beyond.exists() || volume_.is_marked_cell(beyond.cell()) ||
-          (volume_.is_walled(c) && mesh.constraint(h) != none))
-        continue;
-      const Cell<3> &t = mesh.at(beyond.cell());
-      if (is_in_ball(here.M, mesh.vertex(t[0]).x, mesh.vertex(t[1]).x,
-                     mesh.vertex(t[2]).x, mesh.vertex(t[3]).x, here.x) &&
-          !has_ridge(t)) {
-        volume_.mark_cell(beyond.cell());
-        star_.push_back(beyond.cell());
-      }
-    }
-  }
+  grow_cavity(volume_, v, star_);
   if (star_.size() == n_star)
     return;
   if (operator_.replace(star_, v, {none, none},
@@ -319,6 +253,79 @@ void VolumePasses::vertices(const VertexRule &rule) {
     move(v);
     if (rule.reinsert)
       reinsert(v, rule.reinsertion_floor);
+  }
+}
+
+bool keeps_surfaces(const Volume &volume, std::span<const Index> star, Index v,
+                    const Vector<3> &x, double hausdorff_number) {
+  const Triangulation<3> &mesh = volume.mesh;
+  const Vector<3> &from = mesh.vertex(v).x;
+  for (Index c : star) {
+    if (!volume.is_walled(c))
+      continue;
+    const std::size_t at = mesh.local_index(c, v);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index k = i == at ? none : mesh.constraint(HalfFacet(c, i));
+      if (k == none)
+        continue;
+      std::array<Index, 2> ends{none, none}; // of the facet, besides v
+      for (std::size_t j = 0; j < 4; ++j)
+        if (j != i && j != at)
+          ends[ends[0] == none ? 0 : 1] = mesh.at(c)[j];
+      const Vector<3> &a = mesh.vertex(ends[0]).x, &b = mesh.vertex(ends[1]).x;
+      const Vector<3> before = (b - a).cross(from - a), after = (b - a).cross(x - a);
+      const Patch &patch = volume.surface.patch(k);
+      const double cosine = patch.is_planar ? 0 : smallest_facet_cosine;
+      if (!(before.dot(after) > cosine * before.norm() * after.norm()))
+        return false;
+      if (!patch.is_planar && hausdorff_number > 0)
+        for (const Vector<3> *end : {&a, &b})
+          if (volume.surface.deviation(2, k, *end, x) > hausdorff_number)
+            return false;
+    }
+  }
+  return true;
+}
+
+namespace {
+
+/// Whether one of the edges of a cell is a ridge: re-insertion could swallow it.
+bool has_ridge(const Volume &volume, const Cell<3> &cell) {
+  std::array<Index, 4> on{};
+  std::size_t n = 0;
+  for (Index v : cell)
+    if (volume.feature(v) <= 1)
+      on[n++] = v;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (volume.ridges.find(on[i], on[j]) != none)
+        return true;
+  return false;
+}
+
+} // namespace
+
+void grow_cavity(Volume &volume, Index v, std::vector<Index> &star) {
+  const Triangulation<3> &mesh = volume.mesh;
+  const Vertex<3> &here = mesh.vertex(v);
+  const std::size_t n_star = star.size();
+  for (std::size_t i = 0; i < star.size(); ++i) {
+    const Index c = star[i];
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (i < n_star && mesh.at(c)[k] != v)
+        continue;
+      const HalfFacet h(c, k), beyond = mesh.opposite(h);
+      if (!beyond.exists() || volume.is_marked_cell(beyond.cell()) ||
+          (volume.is_walled(c) && mesh.constraint(h) != none))
+        continue;
+      const Cell<3> &t = mesh.at(beyond.cell());
+      if (is_in_ball(here.M, mesh.vertex(t[0]).x, mesh.vertex(t[1]).x,
+                     mesh.vertex(t[2]).x, mesh.vertex(t[3]).x, here.x) &&
+          !has_ridge(volume, t)) {
+        volume.mark_cell(beyond.cell());
+        star.push_back(beyond.cell());
+      }
+    }
   }
 }
 

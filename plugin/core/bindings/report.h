@@ -1,6 +1,7 @@
 #pragma once
 // What the remeshers of both dimensions report.
 
+#include "../agreement_mode.h"
 #include "../monitor.h"
 #include "../statistics.h"
 #include "arrays.h"
@@ -25,6 +26,13 @@ void put_vertices(nb::dict &result, const std::vector<Vertex<d>> &vertices) {
 
 [[nodiscard]] nb::dict as_dict(const Statistics &statistics);
 [[nodiscard]] nb::dict as_dict(const DistortionQuantiles &quantiles);
+
+/// @throws std::invalid_argument for an unknown name
+[[nodiscard]] AgreementMode agreement_mode(const std::string &name);
+
+/// The certified fractions; None when they are not known.
+void put_certified(nb::dict &result, bool was_checked, double simplex_ok,
+                   double star_ok);
 
 /// Tells Python about progress and lets it interrupt: Ctrl-C, or an exception in the
 /// user's callback, unwinds the core.

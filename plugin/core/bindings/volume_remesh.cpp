@@ -39,9 +39,9 @@ remesh3(const Array2<double> &points, const Array2<Index> &cells,
         const Array2<Index> &geometry_facets, const Array1<Index> &geometry_facet_tags,
         const Array2<Index> &geometry_edges, const Array1<Index> &geometry_edge_tags,
         const Array1<Index> &frozen_tags, double ridge_angle, double hausdorff_number,
-        std::size_t max_vertices, double max_seconds, const std::string &consistency,
-        const nb::dict &parameters, std::uint64_t seed, int threads,
-        const nb::object &project, const nb::object &callback) {
+        std::size_t max_vertices, double max_seconds, const std::string &agreement,
+        const std::string &consistency, const nb::dict &parameters, std::uint64_t seed,
+        int threads, const nb::object &project, const nb::object &callback) {
   const auto tensors = tensors_of<3>(metric);
   const VolumeInput input{cells_of<3>(cells),
                           indices_of(cell_tags),
@@ -57,6 +57,7 @@ remesh3(const Array2<double> &points, const Array2<Index> &cells,
   const VolumeSettings settings{hausdorff_number,
                                 max_vertices,
                                 max_seconds,
+                                agreement_mode(agreement),
                                 seed,
                                 threads,
                                 consistency_mode(consistency),
@@ -76,14 +77,9 @@ remesh3(const Array2<double> &points, const Array2<Index> &cells,
   result["facet_tags"] = owned(std::move(out.facet_tags), {out.facets.size()});
   result["edges"] = rows<Index, 2>(out.edges);
   result["edge_tags"] = owned(std::move(out.edge_tags), {out.edges.size()});
-  if (out.was_checked) {
-    result["simplex_ok"] = out.certified.simplex_ok;
-    result["star_ok"] = out.certified.star_ok;
-  } else {
-    result["simplex_ok"] = nb::none();
-    result["star_ok"] = nb::none();
-  }
+  result["agreement"] = out.agreement;
   result["consistency"] = consistency_dict(out.consistency);
+  put_certified(result, out.was_checked, out.simplex_ok, out.star_ok);
   result["statistics"] = as_dict(out.statistics);
   result["distortion"] = as_dict(out.distortion);
   result["counts"] = out.counts;
@@ -105,9 +101,9 @@ void bind_volume_remesh(nb::module_ &module) {
       nb::arg("geometry_facet_tags").noconvert(), nb::arg("geometry_edges").noconvert(),
       nb::arg("geometry_edge_tags").noconvert(), nb::arg("frozen_tags").noconvert(),
       nb::arg("ridge_angle"), nb::arg("hausdorff_number"), nb::arg("max_vertices"),
-      nb::arg("max_seconds"), nb::arg("consistency"), nb::arg("parameters"),
-      nb::arg("seed"), nb::arg("threads"), nb::arg("project").none(),
-      nb::arg("callback").none(),
+      nb::arg("max_seconds"), nb::arg("agreement"), nb::arg("consistency"),
+      nb::arg("parameters"), nb::arg("seed"), nb::arg("threads"),
+      nb::arg("project").none(), nb::arg("callback").none(),
       "A tetrahedral mesh with unit edges in the metric given at its points.");
 }
 
