@@ -19,7 +19,8 @@ class ConsistencyOptions:
     rho_0 : float
         Rule 2: largest radius-edge ratio; above sqrt 2, the classical bound for termination.
     sigma_0 : float
-        Rule 3: smallest sliverity. In 2D a triangle that passes rule 2 is never a sliver.
+        Rule 3: smallest sliverity. In 2D a triangle that passes rule 2 is never a sliver;
+        a regular tetrahedron has .49.
     gamma_0 : float or None
         Bound on the distortion within an element, through the sizing field. None, the
         default, is off: measured, it only adds points.

@@ -36,7 +36,7 @@ class RemeshOptions:
     until_consistent : bool or "pure"
         After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
         star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.
-        "pure" starts from the boundary alone and runs only that algorithm. In 2D only.
+        "pure" starts from the boundary alone and runs only that algorithm, in 2D only.
     consistency : ConsistencyOptions
         Its parameters.
     seed : int

@@ -57,7 +57,8 @@ class RemeshReport:
     tags : tuple of TagMeasure
         Measure of every facet and region tag against the geometry.
     counts : dict of str to float
-        Operations made; ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
+        Operations made; ``consistency_moves`` are the vertices that Algorithm 2 moved in 3D;
+        ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
         legs have equal lengths, and those without a common one.
     seconds : dict of str to float
         Wall time of each phase.

@@ -30,6 +30,7 @@ enum class Rule { kept, size, radius_edge, sliver, inconsistency };
 struct ConsistencyCounts {
   std::size_t size = 0, radius_edge = 0, sliver = 0, inconsistency = 0;
   std::size_t boundary = 0; ///< splits at encroached constrained facets
+  std::size_t moves = 0;    ///< of vertices, in 3D
   int rounds = 0;
   std::string stop; ///< consistent, stalled, max_growth, max_rounds, or the monitor's
 

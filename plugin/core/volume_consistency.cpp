@@ -16,6 +16,14 @@ constexpr int patience = 16;
 /// While a round leaves less than this part of the failing cells, vertices are moved
 /// wherever the cost goes down; then only where fewer facets fail, and points come in.
 constexpr double good_progress = .95;
+/// A round that leaves more than this part of them brings nothing.
+constexpr double any_progress = .995;
+/// Vertices are not moved while more cells fail than this part: it would help little
+/// for what it costs. More places are tried only when at most so many cells fail.
+constexpr double many_failing = .3;
+constexpr std::size_t few_failing = 100;
+/// The clock is looked at after so many bad cells.
+constexpr std::size_t cells_between_looks = 32;
 /// New vertices keep this distance from the others in their own metric (packing).
 constexpr double separation = .4;
 /// Edges of encroached facets that are shorter than this are not split.
@@ -26,17 +34,34 @@ constexpr double edge_part = .3;
 
 /// How hard a round tries.
 struct Effort {
+  bool moves;         ///< vertices
   bool inserts_early; ///< before vertices are moved without fewer failing facets
   bool is_stuck;      ///< walls that cannot be split are no obstacle any more
   int trials;         ///< places for a vertex at each distance
   int allowance;      ///< a point may make so many more facets fail
 };
 
-/// By the number of rounds without fewer failing cells.
-[[nodiscard]] Effort effort_after(int since_best, bool is_slow) {
-  const bool is_stuck = since_best > 3;
-  return {is_slow, is_stuck, is_stuck ? 10 : 3, std::min(-1 + since_best / 4, 2)};
-}
+/// How the failing cells became fewer.
+struct Progress {
+  double failing;       ///< part of the cells
+  double before = 1;    ///< in the round before
+  double reference = 1; ///< when the count below was reset
+  int since_best = 0;   ///< rounds that brought nothing
+
+  void note(double now) {
+    before = std::exchange(failing, now);
+    ++since_best;
+    if (failing < any_progress * reference) {
+      reference = failing;
+      since_best = 0;
+    }
+  }
+  [[nodiscard]] Effort effort(std::size_t n_bad) const {
+    const bool is_stuck = since_best > 3 && n_bad <= few_failing;
+    return {failing<many_failing, failing> good_progress * before, is_stuck,
+            is_stuck ? 10 : 3, is_stuck ? std::min(-1 + since_best / 4, 2) : -1};
+  }
+};
 
 class Rounds {
 public:
@@ -60,9 +85,11 @@ public:
   void treat(const std::vector<BadCell<3>> &bad, int round, const Effort &effort) {
     touched_.assign(mesh_.vertices.size(), 0);
     effort_ = effort;
-    for (const BadCell<3> &item : bad) {
-      if (!monitor_.keep_going(volume_.n_vertices(),
-                               static_cast<double>(round) / max_rounds))
+    for (std::size_t k = 0; k < bad.size(); ++k) {
+      const BadCell<3> &item = bad[k];
+      const double fraction = static_cast<double>(round) / max_rounds;
+      if (!monitor_.keep_going(volume_.n_vertices(), fraction) ||
+          (k % cells_between_looks == 0 && !monitor_.look(fraction)))
         return;
       if (mesh_.at(item.cell) == item.vertices &&
           std::none_of(item.vertices.begin(), item.vertices.end(),
@@ -96,7 +123,9 @@ private:
   }
 
   void treat(const BadCell<3> &item, int round) {
-    if (!effort_.inserts_early) {
+    if (!effort_.moves) {
+      (void)insert_for(item, round);
+    } else if (!effort_.inserts_early) {
       if (!move_any(item, round, 0))
         (void)insert_for(item, round);
     } else if (!move_any(item, round, -1) && !insert_for(item, round)) {
@@ -119,6 +148,7 @@ private:
       CounterRandom random(seed_ + 3, static_cast<std::uint64_t>(v),
                            static_cast<std::uint64_t>(round));
       if (mover_.move(v, {effort_.trials, most_failing}, random)) {
+        ++counts_.moves;
         touched_[static_cast<std::size_t>(v)] = 1;
         touch_link();
         return true;
@@ -298,9 +328,9 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
   Rounds rounds(volume, monitor, parameters, seed, counts);
   const double most =
       (1 + parameters.max_growth) * static_cast<double>(volume.n_vertices());
-  double failing = failing_fraction(volume.mesh, known.bits), before = 1;
-  std::optional<Snapshot> best(Snapshot{volume, known, failing});
-  int since_best = 0;
+  Progress progress{failing_fraction(volume.mesh, known.bits)};
+  progress.reference = progress.failing;
+  std::optional<Snapshot> best(Snapshot{volume, known, progress.failing});
   for (counts.rounds = 0;; ++counts.rounds) {
     const std::vector<BadCell<3>> bad = rounds.bad_cells(known.bits);
     if (bad.empty())
@@ -309,7 +339,7 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
       counts.stop = "max_rounds";
     else if (static_cast<double>(volume.n_vertices()) > most)
       counts.stop = "max_growth";
-    else if (since_best > patience)
+    else if (progress.since_best > patience)
       counts.stop = "stalled";
     else if (!monitor.keep_going(volume.n_vertices(), 0) ||
              !monitor.look(double(counts.rounds) / max_rounds))
@@ -317,19 +347,13 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
     if (!counts.stop.empty())
       break;
     const std::uint32_t since = ++volume.clock;
-    rounds.treat(bad, counts.rounds,
-                 effort_after(since_best, failing > good_progress * before));
+    rounds.treat(bad, counts.rounds, progress.effort(bad.size()));
     renew(volume, since, threads, known);
-    before = std::exchange(failing, failing_fraction(volume.mesh, known.bits));
-    fprintf(stderr, "round %d nv %zu failing %.5f %zu best %d\n", counts.rounds,
-            volume.n_vertices(), failing, bad.size(), since_best);
-    ++since_best;
-    if (failing < best->failing) {
-      best.emplace(Snapshot{volume, known, failing});
-      since_best = 0;
-    }
+    progress.note(failing_fraction(volume.mesh, known.bits));
+    if (progress.failing < best->failing)
+      best.emplace(Snapshot{volume, known, progress.failing});
   }
-  if (failing > best->failing) {
+  if (progress.failing > best->failing) {
     restore(volume, std::move(best->volume));
     known = std::move(best->known);
   }
