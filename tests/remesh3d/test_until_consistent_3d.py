@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from meshes import cube, two_region_cube
-from remesh3d.domains import cube_with_ridges, cube_with_sheet, layer, turning, uniform
+from remesh3d.domains import cube_with_ridges, cube_with_sheet, layer, uniform
 
 from anistar import RemeshOptions, certify, remesh, validate
 from anistar.consistency import ConsistencyOptions
@@ -61,7 +61,7 @@ def test_after_the_agreement_phase_there_is_less_left_to_do():
 def test_a_metric_that_turns_too_fast_stalls_with_the_best_mesh_and_its_figures():
     mesh = cube(3)
     M = hopeless(mesh)
-    options = dataclasses.replace(INSERTING, consistency=ConsistencyOptions(max_growth=0.2))
+    options = dataclasses.replace(INSERTING, consistency=ConsistencyOptions(max_growth=0.1))
     plain = remesh(mesh, M, RemeshOptions(agreement=False))
     done = remesh(mesh, M, options)
     counts = done.report.consistency
@@ -103,7 +103,7 @@ def test_the_bound_on_the_time_returns_a_valid_mesh():
 
 @pytest.mark.parametrize(
     ("domain", "metric"),
-    [(lambda: two_region_cube(4), turning), (cube_with_ridges, layer), (cube_with_sheet, growing)],
+    [(lambda: two_region_cube(4), growing), (cube_with_ridges, layer), (cube_with_sheet, growing)],
     ids=["two regions", "ridges", "sheet"],
 )
 def test_every_tag_is_kept(domain, metric):
@@ -117,8 +117,8 @@ def test_every_tag_is_kept(domain, metric):
 
 
 def test_frozen_facets_stay_as_they_are():
-    mesh = cube(4)
-    done = remesh(mesh, growing(mesh), dataclasses.replace(INSERTING, frozen_tags=[1]))
+    mesh = cube(3)
+    done = remesh(mesh, growing(mesh, 0.2, 0.35), dataclasses.replace(INSERTING, frozen_tags=[1]))
 
     def triangles(m):
         rows = m.points[m.facets[m.facet_tags == 1]]
@@ -138,14 +138,6 @@ def test_the_same_input_gives_the_same_bytes_for_any_number_of_threads():
         assert getattr(one.mesh, name).tobytes() == getattr(two.mesh, name).tobytes()
     assert one.report.consistency == two.report.consistency
     assert validate(one.mesh, reference=mesh, tolerance=1e-9) == []
-
-
-def test_a_distortion_bound_adds_vertices_by_the_size_rule():
-    mesh = cube(4)
-    bounded = dataclasses.replace(INSERTING, consistency=ConsistencyOptions(gamma_0=1.15))
-    free, done = (remesh(mesh, growing(mesh), options) for options in (INSERTING, bounded))
-    assert done.report.consistency["size"] > free.report.consistency["size"]
-    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
 
 
 def test_a_consistent_mesh_is_left_alone():
