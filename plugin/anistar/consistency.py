@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import asdict, dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,7 +19,8 @@ class ConsistencyOptions:
     rho_0 : float
         Rule 2: largest radius-edge ratio; above sqrt 2, the classical bound for termination.
     sigma_0 : float
-        Rule 3: smallest sliverity. In 2D a triangle that passes rule 2 is never a sliver.
+        Rule 3: smallest sliverity. In 2D a triangle that passes rule 2 is never a sliver;
+        a regular tetrahedron has .49.
     gamma_0 : float or None
         Bound on the distortion within an element, through the sizing field. None, the
         default, is off: measured, it only adds points.
@@ -51,3 +53,7 @@ class ConsistencyOptions:
             raise ValueError(f"gamma_0 must be above 1, got {self.gamma_0}")
         if self.candidates < 1:
             raise ValueError(f"candidates must be at least 1, got {self.candidates}")
+
+    def as_parameters(self) -> dict[str, float]:
+        """Return the parameters for the core, where a bound that is off is infinite."""
+        return {**asdict(self), "gamma_0": math.inf if self.gamma_0 is None else self.gamma_0}

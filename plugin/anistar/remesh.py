@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -128,8 +128,6 @@ def _call_core(
     scale: float,
 ) -> dict[str, Any]:
     """Remesh in scaled coordinates; points and metric come back scaled."""
-    parameters = asdict(options.consistency)
-    parameters["gamma_0"] = options.consistency.gamma_0 or np.inf
     try:
         return _core.remesh2(
             mesh.points * scale,
@@ -147,8 +145,8 @@ def _call_core(
             options.vertex_bound,
             options.time_bound,
             options.agreement_mode,
-            {True: "on", False: "off", "pure": "pure"}[options.until_consistent],
-            parameters,
+            options.consistency_mode,
+            options.consistency.as_parameters(),
             options.seed,
             options.threads,
             None if project is None else pointwise(project, scale),

@@ -38,7 +38,7 @@ class RemeshOptions:
     until_consistent : bool or "pure"
         After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
         star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.
-        "pure" starts from the boundary alone and runs only that algorithm. In 2D only.
+        "pure" starts from the boundary alone and runs only that algorithm, in 2D only.
     consistency : ConsistencyOptions
         Its parameters.
     seed : int
@@ -103,3 +103,8 @@ class RemeshOptions:
     def agreement_mode(self) -> str:
         """The name of the mode of the agreement phase in the core."""
         return {True: "on", False: "off", "auto": "auto"}[self.agreement]
+
+    @property
+    def consistency_mode(self) -> str:
+        """The name of the mode of the consistency phase in the core."""
+        return {True: "on", False: "off", "pure": "pure"}[self.until_consistent]

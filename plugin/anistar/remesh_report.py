@@ -63,7 +63,8 @@ class RemeshReport:
     tags : tuple of TagMeasure
         Measure of every facet and region tag against the geometry.
     counts : dict of str to float
-        Operations made; ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
+        Operations made; ``consistency_moves`` are the vertices that Algorithm 2 moved in 3D;
+        ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
         legs have equal lengths, and those without a common one. ``disagreeing_before`` and
         ``disagreeing_after`` count the facets about which the metrics of the vertices of their
         two cells disagree, around the agreement phase.

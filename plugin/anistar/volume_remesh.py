@@ -30,8 +30,8 @@ def remesh_volume(
     ValueError
         If an option asks for what exists in 2D only.
     """
-    if options.until_consistent:
-        raise ValueError("until_consistent exists in 2D only")
+    if options.until_consistent == "pure":
+        raise ValueError('until_consistent="pure" exists in 2D only')
     raw: dict[str, Any] = _core.remesh3(
         mesh.points * scale,
         mesh.cells,
@@ -53,12 +53,11 @@ def remesh_volume(
         options.vertex_bound,
         options.time_bound,
         options.agreement_mode,
+        options.consistency_mode,
+        options.consistency.as_parameters(),
         options.seed,
         options.threads,
         None if project is None else pointwise(project, scale),
         options.callback,
     )
-    raw["simplex_ok"] = raw["star_ok"] = None
-    rules = ("size", "radius_edge", "sliver", "inconsistency", "boundary", "rounds")
-    raw["consistency"] = {**dict.fromkeys(rules, 0), "stop_reason": ""}
     return raw

@@ -114,9 +114,60 @@ DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads) {
   return found;
 }
 
+template <std::size_t d>
+void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> cells, int threads,
+                DelaunayBits &known) {
+  parallel_ranges(cells.size(), threads, [&](std::size_t begin, std::size_t end) {
+    DelaunayTest<d> test(mesh);
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto c = static_cast<std::size_t>(cells[k]);
+      known.bits[c] = test.bits(cells[k]);
+      known.reach[c] = test.reach();
+    }
+  });
+}
+
+template <std::size_t d>
+std::vector<Index> dependent_cells(std::span<const Neighbours<d>> neighbours,
+                                   std::span<const Index> changed,
+                                   std::span<const std::uint8_t> reach) {
+  std::vector<bool> is_seen(neighbours.size(), false);
+  std::vector<Index> layer, next, found;
+  const auto see = [&](Index c) {
+    if (is_seen[static_cast<std::size_t>(c)])
+      return;
+    is_seen[static_cast<std::size_t>(c)] = true;
+    next.push_back(c);
+  };
+  for (Index c : changed)
+    see(c);
+  const int farthest = *std::max_element(reach.begin(), reach.end());
+  for (int distance = 0; distance <= farthest && !next.empty();
+       distance = std::min<int>(distance + 1, farthest_reach)) {
+    layer.swap(next);
+    next.clear();
+    for (Index c : layer) {
+      if (reach[static_cast<std::size_t>(c)] >= distance)
+        found.push_back(c);
+      for (HalfFacet beyond : neighbours[static_cast<std::size_t>(c)])
+        if (beyond.exists())
+          see(beyond.cell());
+    }
+  }
+  return found;
+}
+
 template class DelaunayTest<2>;
 template class DelaunayTest<3>;
 template DelaunayBits delaunay_bits(CertifiedMesh<2>, int);
+template void renew_bits(CertifiedMesh<2>, std::span<const Index>, int, DelaunayBits &);
+template std::vector<Index> dependent_cells<2>(std::span<const Neighbours<2>>,
+                                               std::span<const Index>,
+                                               std::span<const std::uint8_t>);
 template DelaunayBits delaunay_bits(CertifiedMesh<3>, int);
+template void renew_bits(CertifiedMesh<3>, std::span<const Index>, int, DelaunayBits &);
+template std::vector<Index> dependent_cells<3>(std::span<const Neighbours<3>>,
+                                               std::span<const Index>,
+                                               std::span<const std::uint8_t>);
 
 } // namespace anistar

@@ -85,4 +85,16 @@ struct DelaunayBits {
 template <std::size_t d>
 [[nodiscard]] DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads);
 
+/// Decides again for some cells.
+template <std::size_t d>
+void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> cells, int threads,
+                DelaunayBits &known);
+
+/// The cells whose answer can depend on a changed one: those that looked as far as it.
+/// New cells are changed ones, and have the reach 0.
+template <std::size_t d>
+[[nodiscard]] std::vector<Index>
+dependent_cells(std::span<const Neighbours<d>> neighbours,
+                std::span<const Index> changed, std::span<const std::uint8_t> reach);
+
 } // namespace anistar

@@ -1,7 +1,7 @@
 #include "consistency.h"
 
+#include "bounded_distortion.h"
 #include "relocation.h"
-#include "statistics.h"
 
 #include <cmath>
 #include <utility>
@@ -24,16 +24,6 @@ constexpr double shortest_split = .8;
 /// More hits than any point that can be inserted has.
 constexpr int not_insertable = std::numeric_limits<int>::max();
 
-enum class Rule { none, size, radius_edge, sliver, inconsistency };
-
-/// A bad cell, the rule that it breaks and the vertex in whose star it is bad.
-struct BadCell {
-  Index cell;
-  Cell<2> vertices;
-  Rule rule;
-  Index star;
-};
-
 class Rounds {
 public:
   Rounds(Workspace &w, const ConsistencyParameters &parameters, std::uint64_t seed,
@@ -41,28 +31,23 @@ public:
       : w_(w), mesh_(w.mesh), parameters_(parameters), seed_(seed),
         everywhere_(everywhere), counts_(counts) {}
 
-  /// The cells that break a rule, those of the first rule first.
-  [[nodiscard]] std::vector<BadCell>
+  [[nodiscard]] std::vector<BadCell<2>>
   bad_cells(const std::vector<std::uint8_t> &bits) const {
-    std::vector<BadCell> bad;
-    for (std::size_t c = 0; c < mesh_.cells.size(); ++c) {
-      const BadCell found = judge(static_cast<Index>(c), bits[c]);
-      if (found.rule != Rule::none)
-        bad.push_back(found);
-    }
-    std::stable_sort(bad.begin(), bad.end(), [](const BadCell &a, const BadCell &b) {
-      return a.rule < b.rule;
-    });
-    return bad;
+    return anistar::bad_cells(
+        mesh_, bits, parameters_, everywhere_, [&](const Circumcircle &ball, Index v) {
+          return distortion_size(w_.background, ball,
+                                 mesh_.background_cell[static_cast<std::size_t>(v)],
+                                 parameters_.gamma_0);
+        });
   }
 
   /// One point for each bad cell that shares no vertex with one treated before, of the
-  /// first rule that can place any. @returns that rule, `none` when no rule can.
-  Rule treat(const std::vector<BadCell> &bad, int round) {
+  /// first rule that can place any. @returns that rule, `kept` when no rule can.
+  Rule treat(const std::vector<BadCell<2>> &bad, int round) {
     std::vector<bool> touched(mesh_.vertices.size(), false);
     const std::size_t before = mesh_.vertices.size();
-    Rule acting = Rule::none;
-    for (const BadCell &item : bad) {
+    Rule acting = Rule::kept;
+    for (const BadCell<2> &item : bad) {
       if (item.rule != acting && mesh_.vertices.size() > before)
         break;
       acting = item.rule;
@@ -74,7 +59,7 @@ public:
         touched[static_cast<std::size_t>(v)] = true;
       insert_for(item, round);
     }
-    return mesh_.vertices.size() > before ? acting : Rule::none;
+    return mesh_.vertices.size() > before ? acting : Rule::kept;
   }
 
 private:
@@ -86,50 +71,7 @@ private:
   ConsistencyCounts &counts_;
   std::vector<std::pair<Index, HalfFacet>> ring_;
 
-  [[nodiscard]] BadCell judge(Index c, std::uint8_t bits) const {
-    const Cell<2> &cell = mesh_.at(c);
-    const Simplex<2> s = mesh_.simplex(c);
-    BadCell out{c, cell, Rule::none, none};
-    if (bits == all_vertices<2> && !everywhere_)
-      return out;
-    const auto worsen = [&](Rule rule, Index star) {
-      if (out.rule == Rule::none || rule < out.rule) {
-        out.rule = rule;
-        out.star = star;
-      }
-    };
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (bits != 0 && (bits >> k & 1) == 0)
-        continue; // not in this star, but in another one
-      const Vertex<2> &v = mesh_.vertex(cell[k]);
-      const Circumcircle ball = circumcircle(v.M, s[0], s[1], s[2]);
-      const double shortest = shortest_length<2>(v.M, s);
-      const double volume = .5 * cross(s[1] - s[0], s[2] - s[0]) / v.weight;
-      const double rho = ball.radius / shortest;
-      if (ball.radius >= parameters_.alpha_0 * size_at(ball, cell[k]))
-        worsen(Rule::size, cell[k]);
-      else if (rho > parameters_.rho_0)
-        worsen(Rule::radius_edge, cell[k]);
-      else if (sliverity<2>(volume, shortest) < parameters_.sigma_0)
-        worsen(Rule::sliver, cell[k]);
-      else if (bits != all_vertices<2>)
-        worsen(Rule::inconsistency, cell[k]);
-    }
-    return out;
-  }
-
-  /// The sizing field: one, the unit of the metric, or the bounded distortion radius
-  /// where that is smaller (Definition 2.2).
-  [[nodiscard]] double size_at(const Circumcircle &ball, Index v) const {
-    if (std::isinf(parameters_.gamma_0))
-      return 1;
-    Index cell = mesh_.background_cell[static_cast<std::size_t>(v)];
-    const Vertex<2> centre = w_.background.vertex(ball.centre, cell);
-    return std::min(1., bounded_distortion_radius(w_.background, centre, cell,
-                                                  parameters_.gamma_0));
-  }
-
-  void insert_for(const BadCell &item, int round) {
+  void insert_for(const BadCell<2> &item, int round) {
     const SymmetricTensor<2> M = mesh_.vertex(item.star).M;
     const Simplex<2> s = mesh_.simplex(item.cell);
     const Circumcircle ball = circumcircle(M, s[0], s[1], s[2]);
@@ -172,30 +114,11 @@ private:
       if (bound_insertion(best, best_cell)) {
         const Index v = mesh_.add_vertex(best, Triangulation<2>::interior, best_hint);
         w_.cavity.fill(v);
-        count(item.rule);
+        counts_.add(item.rule);
       }
     } else if (wall.exists() && w_.length(wall) > shortest_split &&
                split_edge(w_, wall) != none) {
       ++counts_.boundary;
-    }
-  }
-
-  void count(Rule rule) {
-    switch (rule) {
-    case Rule::size:
-      ++counts_.size;
-      break;
-    case Rule::radius_edge:
-      ++counts_.radius_edge;
-      break;
-    case Rule::sliver:
-      ++counts_.sliver;
-      break;
-    case Rule::inconsistency:
-      ++counts_.inconsistency;
-      break;
-    case Rule::none:
-      break;
     }
   }
 
@@ -276,33 +199,6 @@ private:
 
 } // namespace
 
-double bounded_distortion_radius(const Background<2> &background, const Vertex<2> &at,
-                                 Index cell, double gamma_0) {
-  constexpr int n_directions = 8;
-  constexpr double largest = 2, smallest = .05, ratio = .8;
-  const SymmetricTensor<2> root =
-      matrix_function(at.M, [](double x) { return 1 / std::sqrt(x); });
-  for (double l = largest; l > smallest; l *= ratio) {
-    std::vector<SymmetricTensor<2>> samples{at.M};
-    for (double r : {.5 * l, l})
-      for (int k = 0; k < n_directions; ++k) {
-        const double angle = 2 * std::numbers::pi * k / n_directions;
-        Index hint = cell;
-        samples.push_back(background.metric(
-            at.x +
-                product<2>(root, Vector<2>(r * std::cos(angle), r * std::sin(angle))),
-            hint));
-      }
-    double worst = 1;
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        worst = std::max(worst, distortion(samples[i], samples[j]));
-    if (worst <= gamma_0)
-      return l;
-  }
-  return smallest;
-}
-
 ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                                           Monitor &monitor,
                                           const ConsistencyParameters &parameters,
@@ -323,7 +219,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
   start();
   bool is_sizing = !relocate; // the pure mode starts from the boundary alone
   for (counts.rounds = 0;; ++counts.rounds) {
-    const std::vector<BadCell> bad = rounds.bad_cells(check.bits);
+    const std::vector<BadCell<2>> bad = rounds.bad_cells(check.bits);
     if (failing_fraction(check.bits) < failing_fraction(best_check.bits)) {
       best = w.on_curves;
       best_check = check;
@@ -344,7 +240,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
       break;
     // in the pure mode rules 1 to 3 end by packing, and only rule 4 can stall
     const Rule rule = rounds.treat(bad, counts.rounds);
-    since_best += relocate || rule == Rule::inconsistency || rule == Rule::none;
+    since_best += relocate || rule == Rule::inconsistency || rule == Rule::kept;
     // while failures are everywhere, moving vertices helps little for what it costs
     const double failing = failing_fraction(check.bits);
     const bool moving =

@@ -2,7 +2,7 @@
 // Trial places of a vertex and what its star is worth there.
 
 #include "edits.h"
-#include "random.h"
+#include "ellipse_sampler.h"
 
 namespace anistar {
 
@@ -79,22 +79,6 @@ private:
   Triangulation<2> &mesh_;
   Index v_ = none;
   std::vector<HalfFacet> star_;
-};
-
-/// Random points of the unit ellipse of a metric.
-class EllipseSampler {
-public:
-  explicit EllipseSampler(const SymmetricTensor<2> &M)
-      : root_(matrix_function(M, [](double x) { return 1 / std::sqrt(x); })) {}
-
-  [[nodiscard]] Vector<2> step(double radius, CounterRandom &random) const {
-    const double r = radius * std::sqrt(random.uniform());
-    const double angle = 2 * std::numbers::pi * random.uniform();
-    return product<2>(root_, Vector<2>(r * std::cos(angle), r * std::sin(angle)));
-  }
-
-private:
-  SymmetricTensor<2> root_; ///< M^(-1/2)
 };
 
 } // namespace anistar

@@ -13,9 +13,6 @@
 
 namespace anistar {
 
-/// Whether points are inserted until every star agrees; `pure` starts from the boundary
-/// alone and applies nothing but the rules of the paper.
-enum class ConsistencyMode { off, on, pure };
 
 struct RemeshSettings {
   ConsistencyMode consistency = ConsistencyMode::off;

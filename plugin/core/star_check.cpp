@@ -1,5 +1,6 @@
 #include "star_check.h"
 
+#include "consistency_rules.h"
 #include "moves.h"
 #include "relocation.h"
 
@@ -122,56 +123,12 @@ private:
   }
 };
 
-/// The cells whose answer can depend on a changed one: those that looked as far as it.
-std::vector<Index> dependent(const Triangulation<2> &mesh,
-                             const std::vector<Index> &changed,
-                             const std::vector<std::uint8_t> &reach) {
-  std::vector<bool> is_seen(mesh.cells.size(), false);
-  std::vector<Index> layer, next, found;
-  const auto see = [&](Index c) {
-    if (c == none || is_seen[static_cast<std::size_t>(c)])
-      return;
-    is_seen[static_cast<std::size_t>(c)] = true;
-    next.push_back(c);
-  };
-  for (Index c : changed)
-    see(c);
-  const int farthest = *std::max_element(reach.begin(), reach.end());
-  for (int distance = 0; distance <= farthest && !next.empty();
-       distance = std::min<int>(distance + 1, farthest_reach)) {
-    layer.swap(next);
-    next.clear();
-    for (Index c : layer) {
-      if (reach[static_cast<std::size_t>(c)] >= distance)
-        found.push_back(c);
-      for (HalfFacet beyond : mesh.neighbours[static_cast<std::size_t>(c)])
-        if (beyond.exists())
-          see(beyond.cell());
-    }
-  }
-  return found;
-}
-
 std::vector<Index> failing_cells(const std::vector<std::uint8_t> &bits) {
   std::vector<Index> cells;
   for (std::size_t c = 0; c < bits.size(); ++c)
     if (bits[c] != all_vertices<2>)
       cells.push_back(static_cast<Index>(c));
   return cells;
-}
-
-void count_certified(const Triangulation<2> &mesh, StarCheck &check) {
-  std::vector<bool> ok(mesh.vertices.size(), true);
-  std::size_t cells = 0;
-  for (std::size_t c = 0; c < check.bits.size(); ++c) {
-    cells += check.bits[c] == all_vertices<2>;
-    for (std::size_t k = 0; k < 3; ++k)
-      if ((check.bits[c] >> k & 1) == 0)
-        ok[static_cast<std::size_t>(mesh.cells[c][k])] = false;
-  }
-  check.simplex_ok = static_cast<double>(cells) / static_cast<double>(mesh.n_cells());
-  check.star_ok = static_cast<double>(std::count(ok.begin(), ok.end(), true)) /
-                  static_cast<double>(ok.size());
 }
 
 } // namespace
@@ -198,7 +155,8 @@ StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed, int th
       check.moves += moves;
       if (moves == 0)
         break;
-      for (Index c : dependent(mesh, mender.take_changed(), found.reach)) {
+      for (Index c :
+           dependent_cells<2>(mesh.neighbours, mender.take_changed(), found.reach)) {
         found.bits[static_cast<std::size_t>(c)] = mender.test().bits(c);
         found.reach[static_cast<std::size_t>(c)] = mender.test().reach();
       }
@@ -206,7 +164,9 @@ StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed, int th
     }
   }
   check.bits = std::move(found.bits);
-  count_certified(mesh, check);
+  const CertifiedFractions fractions = certified_fractions(mesh, check.bits);
+  check.simplex_ok = fractions.simplex_ok;
+  check.star_ok = fractions.star_ok;
   return check;
 }
 

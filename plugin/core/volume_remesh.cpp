@@ -2,6 +2,7 @@
 
 #include "stopwatch.h"
 #include "volume_agreement.h"
+#include "volume_consistency.h"
 
 #include <iomanip>
 #include <sstream>
@@ -165,6 +166,28 @@ void extract_facets(const Volume &volume, VolumeResult &out) {
   }
 }
 
+/// Phases 5 and 6, unless a budget has been spent. @pre the mesh was renumbered.
+void certify_stars(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
+                   Stopwatch &watch, VolumeResult &out) {
+  const bool inserting = settings.consistency != ConsistencyMode::off;
+  if (monitor.reason() != StopReason::finished ||
+      (settings.agreement == AgreementMode::off && !inserting))
+    return;
+  watch.phase("certificate");
+  DelaunayBits known = delaunay_bits<3>(certified(volume.mesh), settings.threads);
+  if (inserting) {
+    watch.phase("consistency");
+    out.consistency = refine_until_consistent(volume, monitor, settings.parameters,
+                                              settings.seed, settings.threads, known);
+    out.counts["consistency_moves"] = static_cast<double>(out.consistency.moves);
+  }
+  const CertifiedFractions fractions = certified_fractions(volume.mesh, known.bits);
+  out.was_checked = true;
+  out.simplex_ok = fractions.simplex_ok;
+  out.star_ok = fractions.star_ok;
+  renumber(volume);
+}
+
 } // namespace
 
 VolumeResult remesh_volume(const VolumeInput &input,
@@ -187,6 +210,7 @@ VolumeResult remesh_volume(const VolumeInput &input,
   renumber(volume);
   watch.phase("agreement");
   agree(volume, monitor, settings, out);
+  certify_stars(volume, monitor, settings, watch, out);
 
   watch.phase("report");
   extract_facets(volume, out);

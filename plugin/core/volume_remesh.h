@@ -2,6 +2,7 @@
 // remesh in 3D: a mesh, a metric field and a geometry in; a mesh with unit edges out.
 
 #include "agreement_mode.h"
+#include "consistency_rules.h"
 #include "statistics.h"
 #include "volume_passes.h"
 #include "volume_start.h"
@@ -14,7 +15,9 @@ struct VolumeSettings {
   double max_seconds = std::numeric_limits<double>::infinity();
   AgreementMode agreement = AgreementMode::when_possible;
   std::uint64_t seed = 0;
-  int threads = 1; ///< for the figures of the report; the passes are serial
+  int threads = 1; ///< for the certificate and the report; the passes are serial
+  ConsistencyMode consistency = ConsistencyMode::off;
+  ConsistencyParameters parameters{};
 };
 
 /// The new mesh as flat arrays, and what happened.
@@ -28,7 +31,10 @@ struct VolumeResult {
   std::vector<Index> edge_tags;
   Statistics statistics;
   DistortionQuantiles distortion;
-  std::string agreement; ///< done, or why not
+  bool was_checked = false;           ///< the certified fractions are known
+  double simplex_ok = 0, star_ok = 0; ///< certified fractions
+  std::string agreement;              ///< done, or why not
+  ConsistencyCounts consistency;
   std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase
   StopReason reason = StopReason::finished;

@@ -57,12 +57,6 @@ def test_a_metric_that_is_not_positive_is_named():
         remesh(mesh, M)
 
 
-def test_until_consistent_exists_in_2d_only():
-    mesh = cube(2)
-    with pytest.raises(ValueError, match="in 2D only"):
-        remesh(mesh, uniform(mesh, 0.3), RemeshOptions(until_consistent=True))
-
-
 def test_a_single_tetrahedron_is_refined():
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     mesh = Mesh(points=points, cells=[[0, 1, 2, 3]])

@@ -1,5 +1,6 @@
 #include "../remesh.h"
 #include "bind.h"
+#include "consistency.h"
 #include "geometry.h"
 #include "report.h"
 
@@ -20,40 +21,6 @@ Projection projection_of(nb::handle project) {
     const auto moved = nb::cast<std::pair<double, double>>(project(x[0], x[1], tag));
     return {moved.first, moved.second};
   };
-}
-
-ConsistencyMode consistency_mode(const std::string &name) {
-  if (name == "off")
-    return ConsistencyMode::off;
-  if (name == "on")
-    return ConsistencyMode::on;
-  if (name == "pure")
-    return ConsistencyMode::pure;
-  throw std::invalid_argument("unknown consistency mode '" + name + "'");
-}
-
-[[nodiscard]] ConsistencyParameters parameters_of(const nb::dict &given) {
-  const auto value = [&](const char *name) { return nb::cast<double>(given[name]); };
-  return {value("alpha_0"),
-          value("rho_0"),
-          value("sigma_0"),
-          value("gamma_0"),
-          value("delta"),
-          value("beta"),
-          nb::cast<int>(given["candidates"]),
-          value("max_growth")};
-}
-
-[[nodiscard]] nb::dict consistency_dict(const ConsistencyCounts &counts) {
-  nb::dict out;
-  out["size"] = counts.size;
-  out["radius_edge"] = counts.radius_edge;
-  out["sliver"] = counts.sliver;
-  out["inconsistency"] = counts.inconsistency;
-  out["boundary"] = counts.boundary;
-  out["rounds"] = counts.rounds;
-  out["stop_reason"] = counts.stop;
-  return out;
 }
 
 nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,

@@ -1,0 +1,30 @@
+#pragma once
+// How far a metric field reaches before it has changed too much.
+
+#include "background.h"
+
+namespace anistar {
+
+/// The distance l, in the metric at x, up to which the metric varies by at most
+/// gamma_0: the bounded distortion radius (RR-7712 v2, section 2.3), estimated from
+/// samples on ellipsoids around x; the field is P1, so that samples at half the size of
+/// its cells miss little.
+template <std::size_t d>
+[[nodiscard]] double bounded_distortion_radius(const Background<d> &background,
+                                               const Vertex<d> &at, Index cell,
+                                               double gamma_0);
+
+/// The sizing field at the centre of a ball in the metric of v: one, the unit of the
+/// metric, or the bounded distortion radius where that is smaller (Definition 2.2).
+template <std::size_t d>
+[[nodiscard]] inline double distortion_size(const Background<d> &background,
+                                            const Circumsphere<d> &ball,
+                                            Index background_cell, double gamma_0) {
+  if (std::isinf(gamma_0))
+    return 1;
+  const Vertex<d> centre = background.vertex(ball.centre, background_cell);
+  return std::min(
+      1., bounded_distortion_radius<d>(background, centre, background_cell, gamma_0));
+}
+
+} // namespace anistar

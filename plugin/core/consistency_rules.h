@@ -1,0 +1,154 @@
+#pragma once
+// The rules of Algorithm 2 of Boissonnat, Wormser, Yvinec (RR-7712 v2, section 4.1),
+// for meshes of triangles and of tetrahedra.
+
+#include "certificate.h"
+#include "triangulation.h"
+
+#include <string>
+
+namespace anistar {
+
+/// The parameters of the paper, by their names there.
+struct ConsistencyParameters {
+  double alpha_0; ///< rule 1: r >= alpha_0 sf
+  double rho_0;   ///< rule 2: radius-edge ratio
+  double sigma_0; ///< rule 3: sliverity
+  double gamma_0; ///< distortion bound of the sizing field; infinite: off
+  double delta;   ///< picking region: the ball of radius delta r about the circumcentre
+  double beta;    ///< hitting sets count up to radius beta r
+  int candidates; ///< points that pick_valid tries
+  double max_growth; ///< at most this fraction of vertices is added
+};
+
+/// Whether points are inserted until every star agrees; `pure` starts from the boundary
+/// alone and applies nothing but the rules of the paper.
+enum class ConsistencyMode { off, on, pure };
+
+enum class Rule { kept, size, radius_edge, sliver, inconsistency };
+
+struct ConsistencyCounts {
+  std::size_t size = 0, radius_edge = 0, sliver = 0, inconsistency = 0;
+  std::size_t boundary = 0; ///< splits at encroached constrained facets
+  std::size_t moves = 0;    ///< of vertices, in 3D
+  int rounds = 0;
+  std::string stop; ///< consistent, stalled, max_growth, max_rounds, or the monitor's
+
+  void add(Rule rule) {
+    switch (rule) {
+    case Rule::size:
+      ++size;
+      break;
+    case Rule::radius_edge:
+      ++radius_edge;
+      break;
+    case Rule::sliver:
+      ++sliver;
+      break;
+    case Rule::inconsistency:
+      ++inconsistency;
+      break;
+    case Rule::kept:
+      break;
+    }
+  }
+};
+
+/// A bad cell, the rule that it breaks and the vertex in whose star it is bad.
+template <std::size_t d> struct BadCell {
+  Index cell;
+  Cell<d> vertices;
+  Rule rule;
+  Index star;
+};
+
+/// Which rule a cell breaks, the first of them, in one of the stars that it is in.
+/// @param bits see DelaunayTest
+/// @param everywhere rules 1 to 3 also for cells that are consistent
+/// @param size_at the sizing field, of a circumsphere and the vertex of its metric
+template <std::size_t d, class Size>
+[[nodiscard]] BadCell<d> judge(const Triangulation<d> &mesh, Index c, std::uint8_t bits,
+                               const ConsistencyParameters &parameters, bool everywhere,
+                               Size size_at) {
+  const Cell<d> &cell = mesh.at(c);
+  BadCell<d> out{c, cell, Rule::kept, none};
+  if (bits == all_vertices<d> && !everywhere)
+    return out;
+  const Simplex<d> s = mesh.simplex(c);
+  const auto worsen = [&](Rule rule, Index star) {
+    if (out.rule == Rule::kept || rule < out.rule) {
+      out.rule = rule;
+      out.star = star;
+    }
+  };
+  for (std::size_t k = 0; k <= d; ++k) {
+    if (bits != 0 && (bits >> k & 1) == 0)
+      continue; // not in this star, but in another one
+    const Vertex<d> &v = mesh.vertex(cell[k]);
+    const Circumsphere<d> ball = circumsphere<d>(v.M, s);
+    const double shortest = shortest_length<d>(v.M, s);
+    const double volume = anistar::volume<d>(s) / v.weight;
+    const double rho = ball.radius / shortest;
+    if (ball.radius >= parameters.alpha_0 * size_at(ball, cell[k]))
+      worsen(Rule::size, cell[k]);
+    else if (rho > parameters.rho_0)
+      worsen(Rule::radius_edge, cell[k]);
+    else if (sliverity<d>(volume, shortest) < parameters.sigma_0)
+      worsen(Rule::sliver, cell[k]);
+    else if (bits != all_vertices<d>)
+      worsen(Rule::inconsistency, cell[k]);
+  }
+  return out;
+}
+
+/// The cells that break a rule, those of the first rule first.
+template <std::size_t d, class Size>
+[[nodiscard]] std::vector<BadCell<d>>
+bad_cells(const Triangulation<d> &mesh, const std::vector<std::uint8_t> &bits,
+          const ConsistencyParameters &parameters, bool everywhere, Size size_at) {
+  std::vector<BadCell<d>> bad;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    if (!mesh.is_alive(static_cast<Index>(c)))
+      continue;
+    const BadCell<d> found =
+        judge(mesh, static_cast<Index>(c), bits[c], parameters, everywhere, size_at);
+    if (found.rule != Rule::kept)
+      bad.push_back(found);
+  }
+  std::stable_sort(
+      bad.begin(), bad.end(),
+      [](const BadCell<d> &a, const BadCell<d> &b) { return a.rule < b.rule; });
+  return bad;
+}
+
+/// Certified fractions of a mesh.
+struct CertifiedFractions {
+  double simplex_ok =
+      0;              ///< of the cells: Delaunay in the metrics of all their vertices
+  double star_ok = 0; ///< of the stars: their cells are Delaunay in its metric
+};
+
+template <std::size_t d>
+[[nodiscard]] CertifiedFractions
+certified_fractions(const Triangulation<d> &mesh,
+                    const std::vector<std::uint8_t> &bits) {
+  std::vector<std::uint8_t> ok(mesh.vertices.size(), 1);
+  std::size_t cells = 0, stars = 0, used = 0;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    if (!mesh.is_alive(static_cast<Index>(c)))
+      continue;
+    cells += bits[c] == all_vertices<d>;
+    for (std::size_t k = 0; k <= d; ++k)
+      if ((bits[c] >> k & 1) == 0)
+        ok[static_cast<std::size_t>(mesh.cells[c][k])] = 0;
+  }
+  for (std::size_t v = 0; v < ok.size(); ++v)
+    if (mesh.is_used(static_cast<Index>(v))) {
+      ++used;
+      stars += ok[v];
+    }
+  return {static_cast<double>(cells) / static_cast<double>(mesh.n_cells()),
+          static_cast<double>(stars) / static_cast<double>(used)};
+}
+
+} // namespace anistar

@@ -1,0 +1,156 @@
+"""Algorithms 2 and 3 in 3D: points are inserted until every star agrees, or a bound is met."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from meshes import cube, two_region_cube
+from remesh3d.domains import cube_with_ridges, cube_with_sheet, layer, uniform
+
+from anistar import RemeshOptions, certify, remesh, validate
+from anistar.consistency import ConsistencyOptions
+
+INSERTING = RemeshOptions(agreement=False, until_consistent=True)
+
+
+def growing(mesh, small=0.15, large=0.35, ratio=3.0):
+    """Sizes that grow along x, a third as large along z."""
+    h = small + (large - small) * mesh.points[:, 0]
+    M = np.zeros((mesh.n_points, 3, 3))
+    M[:, 0, 0] = M[:, 1, 1] = 1 / h**2
+    M[:, 2, 2] = (ratio / h) ** 2
+    return M
+
+
+def hopeless(mesh, seed=0, h=0.35, ratio=4.0):
+    """Another direction at every vertex."""
+    Q, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(mesh.n_points, 3, 3)))
+    return np.einsum("nik,k,njk->nij", Q, np.array([1, 1, ratio**2]) / h**2, Q)
+
+
+def test_a_smooth_metric_ends_consistent_with_few_more_vertices():
+    mesh = cube(5)
+    M = growing(mesh)
+    plain = remesh(mesh, M, RemeshOptions(agreement=False))
+    done = remesh(mesh, M, INSERTING)
+    before = certify(plain.mesh, plain.metric)
+    after = certify(done.mesh, done.metric)
+    assert before.star_ok.mean() < 0.9
+    assert after.star_ok.all()
+    assert done.report.consistency["stop_reason"] == "consistent"
+    assert done.report.converged
+    assert done.report.star_ok == done.report.simplex_ok == 1.0
+    assert done.report.counts["consistency_moves"] > 0
+    assert done.mesh.n_points <= 1.05 * plain.mesh.n_points
+    assert done.report.statistics["q_min"] > 0.2
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
+def test_after_the_agreement_phase_there_is_less_left_to_do():
+    mesh = cube(5)
+    alone = remesh(mesh, growing(mesh), INSERTING)
+    options = RemeshOptions(agreement=True, until_consistent=True)
+    done = remesh(mesh, growing(mesh), options)
+    assert done.report.agreement == "done"
+    assert done.report.consistency["stop_reason"] == "consistent"
+    assert done.report.consistency["rounds"] < alone.report.consistency["rounds"]
+    assert certify(done.mesh, done.metric).star_ok.all()
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
+def test_a_metric_that_turns_too_fast_stalls_with_the_best_mesh_and_its_figures():
+    mesh = cube(3)
+    M = hopeless(mesh)
+    options = dataclasses.replace(INSERTING, consistency=ConsistencyOptions(max_growth=0.1))
+    plain = remesh(mesh, M, RemeshOptions(agreement=False))
+    done = remesh(mesh, M, options)
+    counts = done.report.consistency
+    assert counts["stop_reason"] in {"stalled", "max_growth", "max_rounds"}
+    assert not done.report.converged
+    certificate = certify(done.mesh, done.metric)
+    assert certificate.simplex_ok.mean() >= certify(plain.mesh, plain.metric).simplex_ok.mean()
+    assert done.report.simplex_ok == pytest.approx(certificate.simplex_ok.mean(), abs=1e-12)
+    assert done.report.star_ok == pytest.approx(certificate.star_ok.mean(), abs=1e-12)
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
+def test_the_bound_on_the_growth_stops_the_run():
+    mesh = cube(3)
+    options = dataclasses.replace(INSERTING, consistency=ConsistencyOptions(max_growth=1e-3))
+    done = remesh(mesh, hopeless(mesh), options)
+    assert done.report.consistency["stop_reason"] == "max_growth"
+    assert not done.report.converged
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
+def test_the_bound_on_the_vertices_holds_while_points_are_inserted():
+    mesh = cube(3)
+    n = remesh(mesh, hopeless(mesh), RemeshOptions(agreement=False)).mesh.n_points
+    done = remesh(mesh, hopeless(mesh), dataclasses.replace(INSERTING, max_vertices=n + 2))
+    assert done.mesh.n_points <= n + 2
+    assert done.report.stop_reason == "max_vertices"
+    assert not done.report.converged
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
+def test_the_bound_on_the_time_returns_a_valid_mesh():
+    mesh = cube(6)
+    done = remesh(mesh, hopeless(mesh), dataclasses.replace(INSERTING, max_seconds=1.0))
+    assert done.report.stop_reason == "max_seconds"
+    assert not done.report.converged
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
+@pytest.mark.parametrize(
+    ("domain", "metric"),
+    [(lambda: two_region_cube(4), growing), (cube_with_ridges, layer), (cube_with_sheet, growing)],
+    ids=["two regions", "ridges", "sheet"],
+)
+def test_every_tag_is_kept(domain, metric):
+    mesh = domain()
+    done = remesh(mesh, metric(mesh), INSERTING)
+    assert done.report.consistency["rounds"] > 0
+    assert all(abs(tag.change) < 1e-9 for tag in done.report.tags)
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+    found = certify(done.mesh, done.metric)
+    assert done.report.star_ok == pytest.approx(found.star_ok.mean(), abs=1e-12)
+
+
+def test_frozen_facets_stay_as_they_are():
+    mesh = cube(3)
+    done = remesh(mesh, growing(mesh, 0.2, 0.35), dataclasses.replace(INSERTING, frozen_tags=[1]))
+
+    def triangles(m):
+        rows = m.points[m.facets[m.facet_tags == 1]]
+        return {tuple(sorted(map(tuple, row.tolist()))) for row in rows}
+
+    assert done.report.counts["consistency_moves"] > 0
+    assert triangles(done.mesh) == triangles(mesh)
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
+def test_the_same_input_gives_the_same_bytes_for_any_number_of_threads():
+    mesh = cube(4)
+    one, two = (
+        remesh(mesh, growing(mesh), dataclasses.replace(INSERTING, threads=n)) for n in (1, 2)
+    )
+    for name in ("points", "cells", "facets", "facet_tags", "cell_tags"):
+        assert getattr(one.mesh, name).tobytes() == getattr(two.mesh, name).tobytes()
+    assert one.report.consistency == two.report.consistency
+    assert validate(one.mesh, reference=mesh, tolerance=1e-9) == []
+
+
+def test_a_consistent_mesh_is_left_alone():
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    mesh = type(cube(1))(points=points, cells=[[0, 1, 2, 3]])
+    done = remesh(mesh, uniform(mesh, 1.2), INSERTING)
+    assert done.mesh.n_points == 4
+    assert done.report.consistency["rounds"] == 0
+    assert done.report.consistency["stop_reason"] == "consistent"
+    assert validate(done.mesh, reference=mesh) == []
+
+
+def test_the_pure_mode_is_refused():
+    mesh = cube(2)
+    with pytest.raises(ValueError, match='until_consistent="pure" exists in 2D only'):
+        remesh(mesh, uniform(mesh, 0.5), RemeshOptions(until_consistent="pure"))
