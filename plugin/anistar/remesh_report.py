@@ -58,7 +58,8 @@ class RemeshReport:
         Measure of every facet and region tag against the geometry.
     counts : dict of str to float
         Operations made; ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
-        legs have equal lengths, and those without a common one.
+        legs have equal lengths, and those without a common one; in 3D ``curved`` is 1 when
+        some surface or ridge is curved.
     seconds : dict of str to float
         Wall time of each phase.
     """

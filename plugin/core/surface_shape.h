@@ -69,6 +69,7 @@ public:
   /// Finds which patches and curves of the geometry those of the mesh are, so that
   /// sheets with the same tag that come near each other are not mistaken.
   void match(const SurfaceInput &input, const Features &features);
+  [[nodiscard]] bool is_curved() const { return geometry_ != nullptr; }
   void freeze(Index c) { curves_[static_cast<std::size_t>(c)].is_frozen = true; }
   [[nodiscard]] Vector<3> on_patch(Index p, const Vector<3> &x) const;
   /// The unit normal of the surface near x, on the side of `like`; `like` itself where
