@@ -22,7 +22,7 @@ def make_volume_case(seed, number, *, largest=1000.0):
         hausdorff_number=float(rng.choice([0.1, 0.1, 0.02, 0.3])),
         ridge_angle=float(rng.choice([45.0, 45.0, 30.0, 80.0])),
         max_vertices=int(rng.choice([300, 20000, 20000, 20000])),
-        max_seconds=60.0,
+        max_seconds=8.0,
         agreement=False,
     )
     return Case(number, shape.kind, metric_kind, geometry, geometry, M, options)
