@@ -17,7 +17,7 @@ from .options import require
 from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport, report_of
-from .volume_remesh import remesh_volume
+from .volume_remesh import check_surfaces, remesh_volume
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
@@ -106,6 +106,8 @@ def remesh(
         **ridges,
     )
     report = report_of(raw, geometry, new, has_ridges=len(mesh.edges) > 0)
+    if mesh.dim == 3 and report.counts["curved"]:
+        check_surfaces(new, report)
     return Remeshed(new, raw["metric"] * scale**2, report)
 
 

@@ -67,7 +67,8 @@ class RemeshReport:
         ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
         legs have equal lengths, and those without a common one. ``disagreeing_before`` and
         ``disagreeing_after`` count the facets about which the metrics of the vertices of their
-        two cells disagree, around the agreement phase.
+        two cells disagree, around the agreement phase. In 3D ``curved`` is 1 when some surface or
+        ridge is curved.
     seconds : dict of str to float
         Wall time of each phase.
     """

@@ -89,8 +89,8 @@ std::vector<Box<3>> boxes_of(const std::vector<CurvedPiece> &pieces) {
   return boxes;
 }
 
-CurvedPiece flat_piece(const std::array<Vector<3>, 3> &corners) {
-  CurvedPiece piece{corners, {}};
+CurvedPiece flat_piece(const std::array<Vector<3>, 3> &corners, Index feature) {
+  CurvedPiece piece{corners, {}, feature};
   for (auto &row : piece.offsets)
     row.fill(Vector<3>::Zero());
   return piece;
@@ -138,11 +138,15 @@ CurvedPieces::Nearest CurvedPieces::on_piece(const Vector<3> &x, Index k) const 
   return {k, weights, (piece.chordal(weights) - x).squaredNorm()};
 }
 
-CurvedPieces::Nearest CurvedPieces::nearest(const Vector<3> &x, Index start) const {
+CurvedPieces::Nearest CurvedPieces::nearest(const Vector<3> &x, Index start,
+                                            const FeatureSet &among) const {
   Nearest best;
   if (start != none)
     best = on_piece(x, start);
   tree_.nearest(x, best.distance, [&](Index item, double) {
+    const Index of = pieces_[static_cast<std::size_t>(item)].feature;
+    if (!among.empty() && among[static_cast<std::size_t>(of)] == 0)
+      return best.distance;
     const Nearest here = on_piece(x, item);
     // of pieces that share the nearest point, the first: the same for any order
     if (here.distance < best.distance ||
@@ -153,11 +157,17 @@ CurvedPieces::Nearest CurvedPieces::nearest(const Vector<3> &x, Index start) con
   return best;
 }
 
-CurvedPieces::Foot CurvedPieces::project(const Vector<3> &x) const {
+Index CurvedPieces::nearest_feature(const Vector<3> &x) const {
+  const Nearest at = nearest(x, none, {});
+  return pieces_[static_cast<std::size_t>(at.piece)].feature;
+}
+
+CurvedPieces::Foot CurvedPieces::project(const Vector<3> &x,
+                                         const FeatureSet &among) const {
   Vector<3> shift = Vector<3>::Zero();
   Nearest at;
   for (int round = 0; round < max_rounds; ++round) {
-    at = nearest(x - shift, at.piece);
+    at = nearest(x - shift, at.piece, among);
     const CurvedPiece &piece = pieces_[static_cast<std::size_t>(at.piece)];
     const Vector<3> found = piece.displacement(at.weights);
     const double change = (found - shift).squaredNorm();
@@ -186,6 +196,8 @@ double SmoothSurface::distance_to_ridges(const Vector<3> &x) const {
 
 SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
   const Features features = find_features(geometry);
+  n_patches_ = features.patches.size();
+  n_curves_ = features.curves.size();
   jets_ = fit_jets(geometry.points, geometry.facets, features.facet_patch);
   const auto point = [&](Index v) -> const Vector<3> & {
     return geometry.points[static_cast<std::size_t>(v)];
@@ -196,7 +208,7 @@ SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
   for (const RidgeSegment &ridge : features.ridges) {
     const auto [a, b] = ridge.ends;
     curve_of[{std::min(a, b), std::max(a, b)}] = ridge.curve;
-    CurvedPiece piece = flat_piece({point(a), point(b), point(b)});
+    CurvedPiece piece = flat_piece({point(a), point(b), point(b)}, ridge.curve);
     piece.offsets[0][1] =
         control_offset(point(b) - point(a), tangents.at(a, b, ridge.curve));
     piece.offsets[1][0] =
@@ -206,7 +218,8 @@ SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
   }
   for (std::size_t f = 0; f < geometry.facets.size(); ++f) {
     const Facet<3> &t = geometry.facets[f];
-    CurvedPiece piece = flat_piece({point(t[0]), point(t[1]), point(t[2])});
+    CurvedPiece piece =
+        flat_piece({point(t[0]), point(t[1]), point(t[2])}, features.facet_patch[f]);
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
         if (i != j) {

@@ -22,12 +22,16 @@ struct CurvedPiece {
   std::array<Vector<3>, 3> corners;
   /// [i][j]: of the control point next to corner i on the edge to corner j.
   std::array<std::array<Vector<3>, 3>, 3> offsets;
+  Index feature = none; ///< the patch or curve of the geometry that it is part of
 
   [[nodiscard]] Vector<3> displacement(const std::array<double, 3> &weights) const;
   [[nodiscard]] Vector<3> chordal(const std::array<double, 3> &weights) const;
   /// Of the curved triangle, not normalised.
   [[nodiscard]] Vector<3> normal(const std::array<double, 3> &weights) const;
 };
+
+/// Which patches, or curves, of a geometry count; all when it is empty.
+using FeatureSet = std::vector<std::uint8_t>;
 
 /// Pieces among which the place of a point is looked for.
 class CurvedPieces {
@@ -40,7 +44,9 @@ public:
   };
   /// The foot of x: the point in whose normal direction x lies, to the accuracy of a
   /// few rounds. @pre there are pieces.
-  [[nodiscard]] Foot project(const Vector<3> &x) const;
+  [[nodiscard]] Foot project(const Vector<3> &x, const FeatureSet &among = {}) const;
+  /// The patch or curve of the piece nearest to x.
+  [[nodiscard]] Index nearest_feature(const Vector<3> &x) const;
 
 private:
   std::vector<CurvedPiece> pieces_;
@@ -52,7 +58,8 @@ private:
     double distance = std::numeric_limits<double>::infinity(); ///< squared
   };
   [[nodiscard]] Nearest on_piece(const Vector<3> &x, Index piece) const;
-  [[nodiscard]] Nearest nearest(const Vector<3> &x, Index start) const;
+  [[nodiscard]] Nearest nearest(const Vector<3> &x, Index start,
+                                const FeatureSet &among) const;
 };
 
 /// The smooth surfaces and ridges of a geometry, apart by tag.
@@ -68,6 +75,8 @@ public:
   [[nodiscard]] const CurvedPieces *ridge(bool is_given, Index tag) const {
     return find(ridges_, is_given ? tag : untagged);
   }
+  [[nodiscard]] std::size_t n_patches() const { return n_patches_; }
+  [[nodiscard]] std::size_t n_curves() const { return n_curves_; }
   [[nodiscard]] double distance_to_ridges(const Vector<3> &x) const;
   [[nodiscard]] const Jets &jets() const { return jets_; }
 
@@ -77,6 +86,7 @@ private:
   using Tagged = std::vector<std::pair<Index, CurvedPieces>>;
   Tagged surfaces_, ridges_;
   Jets jets_;
+  std::size_t n_patches_ = 0, n_curves_ = 0;
 
   [[nodiscard]] static const CurvedPieces *find(const Tagged &all, Index tag);
 };

@@ -12,6 +12,7 @@
 namespace anistar {
 
 class SmoothSurface;
+struct Features;
 
 /// The surfaces and edges that bound or cross a domain.
 struct SurfaceInput {
@@ -65,6 +66,10 @@ public:
   [[nodiscard]] const SurfaceCurve &curve(Index c) const {
     return curves_[static_cast<std::size_t>(c)];
   }
+  /// Finds which patches and curves of the geometry those of the mesh are, so that
+  /// sheets with the same tag that come near each other are not mistaken.
+  void match(const SurfaceInput &input, const Features &features);
+  [[nodiscard]] bool is_curved() const { return geometry_ != nullptr; }
   void freeze(Index c) { curves_[static_cast<std::size_t>(c)].is_frozen = true; }
   [[nodiscard]] Vector<3> on_patch(Index p, const Vector<3> &x) const;
   /// The unit normal of the surface near x, on the side of `like`; `like` itself where
@@ -100,6 +105,8 @@ private:
   std::vector<SurfaceCurve> curves_;
   std::shared_ptr<const SmoothSurface> geometry_; ///< null when nothing is curved
   SurfaceProjection projection_;
+  /// Of the geometry, for every patch and curve; empty where all of its tag count.
+  std::vector<std::vector<std::uint8_t>> patches_of_, curves_of_;
 };
 
 } // namespace anistar

@@ -229,6 +229,7 @@ VolumeResult remesh_volume(const VolumeInput &input,
                                     {"insertions", counts.insertions},
                                     {"repairs", counts.repairs}})
     out.counts[name] = static_cast<double>(value);
+  out.counts["curved"] = volume.surface.is_curved() ? 1 : 0;
   out.reason = passes.is_full() ? StopReason::max_vertices : monitor.reason();
   return out;
 }

@@ -129,16 +129,16 @@ Volume make_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>>
                    const Background<3> &background, const SurfaceInput &geometry,
                    SurfaceProjection projection) {
   std::optional<SmoothSurface> smooth; // made when it is asked
-  Features features = find_features(input.surface, [&](Index a, Index b) {
+  const Features features = find_features(input.surface, [&](Index a, Index b) {
     if (!smooth)
       smooth.emplace(geometry);
     const Vector<3> &x = input.surface.points[static_cast<std::size_t>(a)],
                     &y = input.surface.points[static_cast<std::size_t>(b)];
     return smooth->distance_to_ridges(.5 * (x + y)) <= farthest_ridge * (y - x).norm();
   });
-  Volume volume(background,
-                SurfaceShape(std::move(features.patches), std::move(features.curves),
-                             geometry, std::move(projection)));
+  Volume volume(background, SurfaceShape(features.patches, features.curves, geometry,
+                                         std::move(projection)));
+  volume.surface.match(input.surface, features);
   const std::size_t n = input.surface.points.size();
   for (std::size_t v = 0; v < n; ++v)
     volume.add_vertex(make_vertex<3>(input.surface.points[v], metric[v]),

@@ -172,9 +172,6 @@ bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double
   Vertex<3> &here = volume_.mesh.vertices[i];
   const Vector<3> x =
       volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
-  if (volume_.feature(v) != 3 &&
-      !keeps_surfaces(volume_, star_, v, x, hausdorff_number_))
-    return false;
   Index at = volume_.mesh.background_cell[i];
   const Vertex<3> moved = volume_.background.vertex(x, at);
   shapes_.evaluate(moved);
@@ -185,7 +182,8 @@ bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double
     return false;
   const bool is_better =
       (least > worst + 1e-4 && total > sum - .02 * n) || total > sum + .002 * n;
-  if (!is_better)
+  if (!is_better || (volume_.feature(v) != 3 &&
+                     !keeps_surfaces(volume_, star_, v, x, hausdorff_number_)))
     return false;
   here = moved;
   volume_.mesh.background_cell[i] = at;
@@ -262,6 +260,16 @@ bool keeps_surfaces(const Volume &volume, std::span<const Index> star, Index v,
   const Vertex<3> moved{x, mesh.vertex(v).M};
   const Vector<3> &from = mesh.vertex(v).x;
   Index seen = none;
+  std::array<Index, 16> checked; ///< the edges of the surface, twice each
+  std::size_t n_checked = 0;
+  const auto first_seen = [&](Index end) {
+    const auto last = checked.begin() + static_cast<std::ptrdiff_t>(n_checked);
+    if (std::find(checked.begin(), last, end) != last)
+      return false;
+    if (n_checked < checked.size())
+      checked[n_checked++] = end;
+    return true;
+  };
   Vector<3> normal = Vector<3>::Zero(); ///< of the surface, at x
   for (Index c : star) {
     if (!volume.is_walled(c))
@@ -291,7 +299,8 @@ bool keeps_surfaces(const Volume &volume, std::span<const Index> star, Index v,
         return false;
       if (!patch.is_planar && hausdorff_number > 0)
         for (Index end : ends)
-          if (volume.surface.strays(2, k, mesh.vertex(end), moved, hausdorff_number))
+          if (first_seen(end) &&
+              volume.surface.strays(2, k, mesh.vertex(end), moved, hausdorff_number))
             return false;
     }
   }

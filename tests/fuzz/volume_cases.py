@@ -22,7 +22,7 @@ def make_volume_case(seed, number, *, largest=1000.0):
         hausdorff_number=float(rng.choice([0.1, 0.1, 0.02, 0.3])),
         ridge_angle=float(rng.choice([45.0, 45.0, 30.0, 80.0])),
         max_vertices=int(rng.choice([300, 20000, 20000, 20000])),
-        max_seconds=60.0,
+        max_seconds=8.0,
         agreement=False,
     )
     return Case(number, shape.kind, metric_kind, geometry, geometry, M, options)
@@ -121,6 +121,8 @@ def _measures(case, done):
     size = np.abs(geometry.points).max() / np.ptp(geometry.points, axis=0).min()
     if case.kind in FLAT and not abs(got - want) <= (1e-9 + 1e-14 * size) * want:
         return f"the volume is {got:.12g}, not {want:.12g}"
+    if case.options.frozen_tags:
+        return ""  # what meets a frozen surface follows its facets, not its curve
     slack = 0.25 + 2 * case.options.hausdorff_number
     for name, measure, rows in (
         ("facet", facet_measures, "facets"),

@@ -90,7 +90,7 @@ def _cube(rng):
 
 
 def _plate(rng):
-    shape = tuple(rng.integers(1, 9, size=2)) + (int(rng.integers(1, 3)),)
+    shape = (*rng.integers(1, 9, size=2), int(rng.integers(1, 3)))
     points, cells = boxes(shape)
     return points * [1, 1, 10 ** rng.uniform(-3, -0.5)], cells
 
