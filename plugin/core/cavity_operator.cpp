@@ -24,8 +24,23 @@ bool CavityOperator::replace(std::span<const Index> cells, Index apex,
     return false;
   if (!surface_.empty() && !keeps_link())
     return false;
+  if (volume_.slab && !stays_in_slab(cells)) {
+    volume_.is_put_off = true;
+    return false;
+  }
   commit(cells);
   return true;
+}
+
+/// The cells across the boundary of the cavity will have new neighbours.
+bool CavityOperator::stays_in_slab(std::span<const Index> cells) const {
+  std::size_t n_new = 0;
+  for (const Outer &outer : outers_) {
+    n_new += outer.kind == Kind::base;
+    if (outer.beyond.exists() && !volume_.is_inside(volume_.mesh.apex(outer.beyond)))
+      return false;
+  }
+  return n_new <= cells.size() + volume_.free_cells.size();
 }
 
 bool CavityOperator::is_lost(Index u, Index w) const {
@@ -370,7 +385,7 @@ void CavityOperator::commit(std::span<const Index> cells) {
       mesh.vertex_cell[static_cast<std::size_t>(v)] = outer.cell;
   }
   for (std::size_t k = used; k < cells.size(); ++k)
-    mesh.free_cell(cells[k]);
+    volume_.free_cell(cells[k]);
   join_pairs();
 }
 

@@ -48,6 +48,8 @@ public:
   /// keep their shape, and the quality is acceptable.
   /// @param lost what vanishes: {none, none}, a vertex {v, none}, or an edge {a, b};
   /// boundary facets that contain it are replaced by those of the apex.
+  /// In a slab what would touch a cell outside of it is put off.
+  /// @pre the cells are in the slab.
   bool replace(std::span<const Index> cells, Index apex, std::array<Index, 2> lost,
                const Acceptance &acceptance);
 
@@ -116,6 +118,7 @@ private:
   [[nodiscard]] Index local_index(Index v);
   [[nodiscard]] Index region_at(const Port &port) const;
   [[nodiscard]] HalfFacet half_of(const Port &port) const;
+  [[nodiscard]] bool stays_in_slab(std::span<const Index> cells) const;
   void commit(std::span<const Index> cells);
   void join_pairs();
 };

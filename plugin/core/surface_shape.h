@@ -76,6 +76,8 @@ public:
     const Vector<3> middle = .5 * (a + b);
     return (place(dimension, lies_on, middle) - middle).norm() / (b - a).norm();
   }
+  /// Whether a user's projection may be called, which only the calling thread may do.
+  [[nodiscard]] bool has_projection() const { return geometry_ && projection_; }
   [[nodiscard]] bool is_flat(Index dimension, Index lies_on) const {
     return dimension == 2   ? patch(lies_on).is_planar
            : dimension == 1 ? curve(lies_on).is_straight

@@ -9,6 +9,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
     v = mesh.add_vertex(vertex, dimension, background_cell);
     support.push_back(lies_on);
     vertex_clock.push_back(clock);
+    data->slabs.strip.push_back(0);
     ridges.resize(mesh.vertices.size());
     return v;
   }
@@ -29,6 +30,11 @@ void Volume::remove_vertex(Index v) {
 }
 
 Index Volume::add_cell() {
+  if (slab) {
+    const Index c = free_cells.back();
+    free_cells.pop_back();
+    return c;
+  }
   const Index c = mesh.add_cell();
   if (static_cast<std::size_t>(c) >= quality.size()) {
     quality.push_back(0);
@@ -38,6 +44,24 @@ Index Volume::add_cell() {
   if (static_cast<std::size_t>(c) >= cell_stamp_.size())
     cell_stamp_.resize(mesh.cells.size() + mesh.cells.size() / 2, 0);
   return c;
+}
+
+void Volume::free_cell(Index c) {
+  if (!slab) {
+    mesh.free_cell(c);
+    return;
+  }
+  mesh.at(c)[0] = none;
+  free_cells.push_back(c);
+}
+
+bool Volume::may_change_around(Index v, std::span<const Index> star) const {
+  for (Index c : star) {
+    const HalfFacet beyond = mesh.opposite(HalfFacet(c, mesh.local_index(c, v)));
+    if (!may_change(c) || (beyond.exists() && !is_inside(mesh.apex(beyond))))
+      return false;
+  }
+  return true;
 }
 
 void Volume::measure_cell(Index c) {
@@ -202,6 +226,7 @@ void renumber(Volume &volume) {
       clock = std::min(clock, volume.vertex_clock[static_cast<std::size_t>(v)]);
     volume.cell_clock[c] = clock;
   }
+  volume.data->slabs = cut_into_slabs(mesh);
 }
 
 } // namespace anistar

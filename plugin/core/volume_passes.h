@@ -5,6 +5,7 @@
 #include "monitor.h"
 
 #include <map>
+#include <memory>
 #include <string>
 
 namespace anistar {
@@ -13,6 +14,8 @@ namespace anistar {
 struct VolumeCounts {
   std::size_t splits = 0, collapses = 0, edge_swaps = 0, face_swaps = 0, moves = 0,
               insertions = 0, repairs = 0;
+
+  VolumeCounts &operator+=(const VolumeCounts &other);
 };
 
 /// Which cells and vertices a pass looks at: those that changed since it last ran.
@@ -36,9 +39,9 @@ struct VertexRule {
 class VolumePasses {
 public:
   VolumePasses(Volume &volume, Monitor &monitor, double hausdorff_number,
-               std::uint64_t seed)
+               std::uint64_t seed, int threads = 1)
       : volume_(volume), operator_(volume), monitor_(monitor),
-        hausdorff_number_(hausdorff_number), seed_(seed) {}
+        hausdorff_number_(hausdorff_number), seed_(seed), threads_(threads) {}
 
   /// Splits the longest edge of every cell that is too long, and edges that stray from
   /// their curved surface or ridge; @returns how many.
@@ -64,13 +67,21 @@ private:
   Monitor &monitor_;
   double hausdorff_number_; ///< of curved surfaces and ridges, relative to an edge
   std::uint64_t seed_;
+  int threads_;
   VolumeCounts counts_;
   std::array<std::uint32_t, 3> last_{};
   bool is_full_ = false; ///< a split had to be left out for want of vertices
   std::vector<Index> star_, ring_;
   Shell shell_;
   StarShapes shapes_;
+  struct Helper;
+  std::vector<std::shared_ptr<Helper>> team_; ///< a helper to a further thread
 
+  template <class SlabOf, class Visit>
+  void in_slabs(std::vector<Index> items, SlabOf slab_of, Visit visit);
+  template <class Visit>
+  void visit_in_slab(std::span<const Index> items, Visit visit,
+                     std::vector<Index> &put_off);
   [[nodiscard]] std::uint32_t begin(Pass pass);
   [[nodiscard]] bool go_on(std::size_t k, std::size_t n);
 
@@ -98,6 +109,7 @@ private:
   [[nodiscard]] Vector<3> ideal_step(Index v, const Matrix<3> &L, double &worst,
                                      double &sum);
   [[nodiscard]] bool try_move(Index v, const Vector<3> &step, double worst, double sum);
+  void treat_vertex(Index v, const VertexRule &rule);
   void reinsert(Index v, double floor);
   [[nodiscard]] bool repair_cell(Index c);
 };

@@ -93,10 +93,12 @@ VolumeResult remesh_volume(const VolumeInput &input,
   Stopwatch watch(monitor, out.seconds);
 
   watch.phase("background");
-  const Background<3> background(input.surface.points, input.cells, metric);
+  const Background<3> background(input.surface.points, input.cells, metric,
+                                 settings.threads);
   Volume volume =
       make_volume(input, metric, background, geometry, std::move(projection));
-  VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed);
+  VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed,
+                      settings.threads);
   watch.phase("size");
   grow(volume, passes);
   watch.phase("shape");

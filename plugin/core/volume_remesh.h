@@ -12,7 +12,7 @@ struct VolumeSettings {
   std::size_t max_vertices = static_cast<std::size_t>(-1);
   double max_seconds = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 0;
-  int threads = 1; ///< for the figures of the report; the passes are serial
+  int threads = 1;
 };
 
 /// The new mesh as flat arrays, and what happened.

@@ -107,7 +107,10 @@ Index VolumePasses::new_vertex(const Vector<3> &x, Index dimension, Index lies_o
   // the hint is that of the last vertex of the shell, which is near
   Index at = volume_.mesh.background_cell[static_cast<std::size_t>(shell_.a)];
   const Vertex<3> vertex = volume_.background.vertex(x, at);
-  return volume_.add_vertex(vertex, dimension, lies_on, at);
+  const Index v = volume_.add_vertex(vertex, dimension, lies_on, at);
+  std::vector<std::uint16_t> &strip = volume_.data->slabs.strip;
+  strip[static_cast<std::size_t>(v)] = strip[static_cast<std::size_t>(shell_.a)];
+  return v;
 }
 
 bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rule,

@@ -1,6 +1,7 @@
 #include "volume_passes.h"
 
 #include "random.h"
+#include "volume_team.h"
 
 namespace anistar {
 namespace {
@@ -288,6 +289,10 @@ void VolumePasses::reinsert(Index v, double floor) {
       if (!beyond.exists() || volume_.is_marked_cell(beyond.cell()) ||
           (volume_.is_walled(c) && mesh.constraint(h) != none))
         continue;
+      if (volume_.slab && !volume_.is_inside(mesh.apex(beyond))) {
+        volume_.is_put_off = true;
+        return;
+      }
       const Cell<3> &t = mesh.at(beyond.cell());
       if (is_in_ball(here.M, mesh.vertex(t[0]).x, mesh.vertex(t[1]).x,
                      mesh.vertex(t[2]).x, mesh.vertex(t[3]).x, here.x) &&
@@ -304,22 +309,37 @@ void VolumePasses::reinsert(Index v, double floor) {
     ++counts_.insertions;
 }
 
+/// In a slab it does what it can, and puts the rest off.
+void VolumePasses::treat_vertex(Index v, const VertexRule &rule) {
+  star_of(volume_, v, star_);
+  if (volume_.slab &&
+      (volume_.feature(v) <= 1 || !volume_.may_change_around(v, star_))) {
+    volume_.is_put_off = true;
+    return;
+  }
+  if (collapse_shortest(v, rule))
+    return;
+  move(v);
+  if (rule.reinsert)
+    reinsert(v, rule.reinsertion_floor);
+}
+
 void VolumePasses::vertices(const VertexRule &rule) {
   const std::uint32_t since = begin(Pass::vertex);
   const Triangulation<3> &mesh = volume_.mesh;
-  const std::size_t n = mesh.vertices.size();
-  for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
-    const auto v = static_cast<Index>(k);
-    if (!mesh.is_used(v) || volume_.vertex_clock[k] < since ||
-        mesh.feature[k] == Triangulation<3>::corner)
-      continue;
-    star_of(volume_, v, star_);
-    if (collapse_shortest(v, rule))
-      continue;
-    move(v);
-    if (rule.reinsert)
-      reinsert(v, rule.reinsertion_floor);
-  }
+  std::vector<Index> all;
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k)
+    if (mesh.is_used(static_cast<Index>(k)) &&
+        mesh.feature[k] != Triangulation<3>::corner)
+      all.push_back(static_cast<Index>(k));
+  in_slabs(
+      std::move(all),
+      [&](Index v, int round) { return volume_.data->slabs.of_vertex(v, round); },
+      [&, since](VolumePasses &passes, Index v) {
+        if (mesh.is_used(v) &&
+            volume_.vertex_clock[static_cast<std::size_t>(v)] >= since)
+          passes.treat_vertex(v, rule);
+      });
 }
 
 } // namespace anistar

@@ -1,0 +1,96 @@
+#include "slabs.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace anistar {
+namespace {
+
+/// A slab is as thick as that many cells: at each side a vertex needs the cells around
+/// it and across their facets.
+constexpr double cells_across = 6;
+constexpr std::size_t most_slabs = 32;
+/// Figures are taken from samples of about this many vertices and cells.
+constexpr std::size_t sample_size = 2048;
+/// Cuts at which the cells of an axis are counted.
+constexpr std::size_t n_trial_cuts = 15;
+
+/// Coordinates along an axis, sorted.
+std::vector<double> sample(const Triangulation<3> &mesh, int axis) {
+  const std::size_t step = std::max<std::size_t>(1, mesh.vertices.size() / sample_size);
+  std::vector<double> x;
+  for (std::size_t v = 0; v < mesh.vertices.size(); v += step)
+    x.push_back(mesh.vertices[v].x[axis]);
+  std::sort(x.begin(), x.end());
+  return x;
+}
+
+/// The places that cut sorted coordinates into n equal parts.
+std::vector<double> quantiles(const std::vector<double> &x, std::size_t n) {
+  std::vector<double> cuts;
+  for (std::size_t k = 1; k < n; ++k)
+    cuts.push_back(x[x.size() * k / n]);
+  return cuts;
+}
+
+/// The number of cuts below x.
+std::ptrdiff_t part(const std::vector<double> &cuts, double x) {
+  return std::upper_bound(cuts.begin(), cuts.end(), x) - cuts.begin();
+}
+
+/// The share of the cells that lie across a cut, in the mean of all cuts.
+double crossing(const Triangulation<3> &mesh, int axis,
+                const std::vector<double> &cuts) {
+  const std::size_t step = std::max<std::size_t>(1, mesh.cells.size() / sample_size);
+  std::ptrdiff_t n = 0, crossed = 0;
+  for (std::size_t c = 0; c < mesh.cells.size(); c += step, ++n) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Index v : mesh.cells[c]) {
+      low = std::min(low, mesh.vertex(v).x[axis]);
+      high = std::max(high, mesh.vertex(v).x[axis]);
+    }
+    crossed += part(cuts, high) - part(cuts, low);
+  }
+  return static_cast<double>(crossed) / static_cast<double>(n) /
+         static_cast<double>(cuts.size());
+}
+
+} // namespace
+
+std::size_t Slabs::of_cell(const Cell<3> &cell, int round) const {
+  if (cell[0] == none)
+    return nowhere;
+  const std::size_t k = of_vertex(cell[0], round);
+  return of_vertex(cell[1], round) == k && of_vertex(cell[2], round) == k &&
+                 of_vertex(cell[3], round) == k
+             ? k
+             : nowhere;
+}
+
+Slabs cut_into_slabs(const Triangulation<3> &mesh) {
+  Slabs slabs{1, std::vector<std::uint16_t>(mesh.vertices.size(), 0)};
+  if (mesh.cells.empty())
+    return slabs;
+  std::vector<double> x;
+  double least = 1;
+  int best = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> along = sample(mesh, axis);
+    const double share = crossing(mesh, axis, quantiles(along, n_trial_cuts + 1));
+    if (axis == 0 || share < least) {
+      x = std::move(along);
+      least = share;
+      best = axis;
+    }
+  }
+  const double n = 1 / (cells_across * std::max(least, 1e-3));
+  slabs.n = std::clamp<std::size_t>(static_cast<std::size_t>(n), 1, most_slabs);
+  if (slabs.n == 1)
+    return slabs;
+  const std::vector<double> cuts = quantiles(x, 2 * slabs.n);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    slabs.strip[v] = static_cast<std::uint16_t>(part(cuts, mesh.vertices[v].x[best]));
+  return slabs;
+}
+
+} // namespace anistar
