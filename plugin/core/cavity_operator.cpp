@@ -381,6 +381,7 @@ void CavityOperator::commit(std::span<const Index> cells) {
     volume_.quality[c] = outer.quality;
     volume_.walled[c] = outer.constraint != none;
     volume_.touch(outer.cell);
+    volume_.data->slabs.add_cell(mesh.cells[c]);
     for (Index v : mesh.cells[c])
       mesh.vertex_cell[static_cast<std::size_t>(v)] = outer.cell;
   }

@@ -6,9 +6,10 @@
 namespace anistar {
 namespace {
 
-/// A slab is as thick as that many cells: at each side a vertex needs the cells around
-/// it and across their facets.
+/// A slab is as thick as that many cells, and has that many vertices: near its sides
+/// the cells around a vertex are not all inside.
 constexpr double cells_across = 6;
+constexpr std::size_t fewest_vertices = 4096;
 constexpr std::size_t most_slabs = 32;
 /// Figures are taken from samples of about this many vertices and cells.
 constexpr std::size_t sample_size = 2048;
@@ -67,9 +68,30 @@ std::size_t Slabs::of_cell(const Cell<3> &cell, int round) const {
              : nowhere;
 }
 
+void Slabs::add_vertex(Index v) {
+  const auto i = static_cast<std::size_t>(v);
+  if (i == strip.size()) {
+    strip.push_back(0);
+    border.push_back(0);
+  }
+  border[i] = 0;
+}
+
+void Slabs::add_cell_on_strips(const Cell<3> &cell) {
+  for (int round = 0; round < n_rounds; ++round)
+    if (of_cell(cell, round) == nowhere)
+      for (Index v : cell) {
+        std::uint8_t &bits = border[static_cast<std::size_t>(v)];
+        bits = static_cast<std::uint8_t>(bits | 1u << round);
+      }
+}
+
 Slabs cut_into_slabs(const Triangulation<3> &mesh) {
-  Slabs slabs{1, std::vector<std::uint16_t>(mesh.vertices.size(), 0)};
-  if (mesh.cells.empty())
+  const std::size_t n_vertices = mesh.vertices.size();
+  Slabs slabs;
+  slabs.strip.assign(n_vertices, 0);
+  slabs.border.assign(n_vertices, 0);
+  if (n_vertices < 2 * fewest_vertices)
     return slabs;
   std::vector<double> x;
   double least = 1;
@@ -84,12 +106,15 @@ Slabs cut_into_slabs(const Triangulation<3> &mesh) {
     }
   }
   const double n = 1 / (cells_across * std::max(least, 1e-3));
-  slabs.n = std::clamp<std::size_t>(static_cast<std::size_t>(n), 1, most_slabs);
+  slabs.n = std::clamp<std::size_t>(static_cast<std::size_t>(n), 1,
+                                    std::min(most_slabs, n_vertices / fewest_vertices));
   if (slabs.n == 1)
     return slabs;
   const std::vector<double> cuts = quantiles(x, 2 * slabs.n);
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+  for (std::size_t v = 0; v < n_vertices; ++v)
     slabs.strip[v] = static_cast<std::uint16_t>(part(cuts, mesh.vertices[v].x[best]));
+  for (const Cell<3> &cell : mesh.cells)
+    slabs.add_cell(cell);
   return slabs;
 }
 

@@ -9,7 +9,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
     v = mesh.add_vertex(vertex, dimension, background_cell);
     support.push_back(lies_on);
     vertex_clock.push_back(clock);
-    data->slabs.strip.push_back(0);
+    data->slabs.add_vertex(v);
     ridges.resize(mesh.vertices.size());
     return v;
   }
@@ -21,6 +21,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
   mesh.background_cell[i] = background_cell;
   support[i] = lies_on;
   vertex_clock[i] = clock;
+  data->slabs.add_vertex(v);
   return v;
 }
 
@@ -53,15 +54,6 @@ void Volume::free_cell(Index c) {
   }
   mesh.at(c)[0] = none;
   free_cells.push_back(c);
-}
-
-bool Volume::may_change_around(Index v, std::span<const Index> star) const {
-  for (Index c : star) {
-    const HalfFacet beyond = mesh.opposite(HalfFacet(c, mesh.local_index(c, v)));
-    if (!may_change(c) || (beyond.exists() && !is_inside(mesh.apex(beyond))))
-      return false;
-  }
-  return true;
 }
 
 void Volume::measure_cell(Index c) {

@@ -62,15 +62,6 @@ struct Volume {
   [[nodiscard]] bool is_inside(Index v) const {
     return slab->contains(data->slabs.strip[static_cast<std::size_t>(v)]);
   }
-  /// Whether a cell may be changed.
-  [[nodiscard]] bool may_change(Index c) const {
-    const Cell<3> &cell = mesh.at(c);
-    return is_inside(cell[0]) && is_inside(cell[1]) && is_inside(cell[2]) &&
-           is_inside(cell[3]);
-  }
-  /// Whether the star of v and the cells across its link may be changed.
-  [[nodiscard]] bool may_change_around(Index v, std::span<const Index> star) const;
-
   [[nodiscard]] std::size_t n_vertices() const {
     return mesh.vertices.size() - free_vertices.size();
   }

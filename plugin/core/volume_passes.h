@@ -109,7 +109,7 @@ private:
   [[nodiscard]] Vector<3> ideal_step(Index v, const Matrix<3> &L, double &worst,
                                      double &sum);
   [[nodiscard]] bool try_move(Index v, const Vector<3> &step, double worst, double sum);
-  void treat_vertex(Index v, const VertexRule &rule);
+  void treat_vertex(Index v, const VertexRule &rule, std::uint8_t &is_placed);
   void reinsert(Index v, double floor);
   [[nodiscard]] bool repair_cell(Index c);
 };

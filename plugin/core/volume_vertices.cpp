@@ -309,17 +309,16 @@ void VolumePasses::reinsert(Index v, double floor) {
     ++counts_.insertions;
 }
 
-/// In a slab it does what it can, and puts the rest off.
-void VolumePasses::treat_vertex(Index v, const VertexRule &rule) {
+/// @param is_placed whether v waits only for its re-insertion
+void VolumePasses::treat_vertex(Index v, const VertexRule &rule,
+                                std::uint8_t &is_placed) {
   star_of(volume_, v, star_);
-  if (volume_.slab &&
-      (volume_.feature(v) <= 1 || !volume_.may_change_around(v, star_))) {
-    volume_.is_put_off = true;
-    return;
+  if (is_placed == 0) {
+    if (collapse_shortest(v, rule) || volume_.is_put_off)
+      return;
+    move(v);
+    is_placed = 1;
   }
-  if (collapse_shortest(v, rule))
-    return;
-  move(v);
   if (rule.reinsert)
     reinsert(v, rule.reinsertion_floor);
 }
@@ -332,13 +331,17 @@ void VolumePasses::vertices(const VertexRule &rule) {
     if (mesh.is_used(static_cast<Index>(k)) &&
         mesh.feature[k] != Triangulation<3>::corner)
       all.push_back(static_cast<Index>(k));
+  std::vector<std::uint8_t> is_placed(mesh.vertices.size(), 0);
   in_slabs(
       std::move(all),
-      [&](Index v, int round) { return volume_.data->slabs.of_vertex(v, round); },
+      [&](Index v, int round) { // the graph of ridges is no slab's
+        return volume_.feature(v) <= 1 ? Slabs::nowhere
+                                       : volume_.data->slabs.of_star(v, round);
+      },
       [&, since](VolumePasses &passes, Index v) {
-        if (mesh.is_used(v) &&
-            volume_.vertex_clock[static_cast<std::size_t>(v)] >= since)
-          passes.treat_vertex(v, rule);
+        const auto k = static_cast<std::size_t>(v);
+        if (mesh.is_used(v) && volume_.vertex_clock[k] >= since)
+          passes.treat_vertex(v, rule, is_placed[k]);
       });
 }
 
