@@ -1,5 +1,7 @@
 #include "volume.h"
 
+#include "parallel.h"
+
 namespace anistar {
 
 Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on,
@@ -195,9 +197,9 @@ void take_along(std::vector<T> &values, const std::vector<Index> &rank, std::siz
 
 } // namespace
 
-void renumber(Volume &volume) {
+void renumber(Volume &volume, int threads) {
   Triangulation<3> &mesh = volume.mesh;
-  const std::vector<Index> rank = sort_along_curve<3>(mesh);
+  const std::vector<Index> rank = sort_along_curve<3>(mesh, threads);
   const std::size_t n = mesh.vertices.size();
   take_along(volume.support, rank, n);
   take_along(volume.vertex_clock, rank, n);
@@ -207,17 +209,19 @@ void renumber(Volume &volume) {
   volume.quality.resize(n_cells);
   volume.walled.resize(n_cells);
   volume.cell_clock.resize(n_cells);
-  for (std::size_t c = 0; c < n_cells; ++c) {
-    volume.measure_cell(static_cast<Index>(c));
-    volume.walled[c] = 0;
-    for (Index patch : mesh.constraints[c])
-      volume.walled[c] |= patch != none;
-    // a cell that changed has stamped its vertices: this is never too early
-    std::uint32_t clock = volume.clock;
-    for (Index v : mesh.cells[c])
-      clock = std::min(clock, volume.vertex_clock[static_cast<std::size_t>(v)]);
-    volume.cell_clock[c] = clock;
-  }
+  parallel_ranges(n_cells, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      volume.measure_cell(static_cast<Index>(c));
+      volume.walled[c] = 0;
+      for (Index patch : mesh.constraints[c])
+        volume.walled[c] |= patch != none;
+      // a cell that changed has stamped its vertices: this is never too early
+      std::uint32_t clock = volume.clock;
+      for (Index v : mesh.cells[c])
+        clock = std::min(clock, volume.vertex_clock[static_cast<std::size_t>(v)]);
+      volume.cell_clock[c] = clock;
+    }
+  });
   volume.data->slabs = cut_into_slabs(mesh);
 }
 

@@ -151,7 +151,7 @@ struct EdgeWalls {
 };
 [[nodiscard]] EdgeWalls walls_at(const Volume &volume, const Shell &shell);
 
-/// Renumbers along a Hilbert curve.
-void renumber(Volume &volume);
+/// Renumbers along a Hilbert curve, and cuts into slabs.
+void renumber(Volume &volume, int threads = 1);
 
 } // namespace anistar

@@ -85,6 +85,13 @@ private:
   [[nodiscard]] std::uint32_t begin(Pass pass);
   [[nodiscard]] bool go_on(std::size_t k, std::size_t n);
 
+  struct LongEdge {
+    Index a, b; ///< none: no edge is longer
+    double length;
+  };
+  [[nodiscard]] LongEdge longest_edge(Index c, double above) const;
+  [[nodiscard]] std::vector<std::uint8_t> due_cells(double above,
+                                                    std::uint32_t since) const;
   [[nodiscard]] bool split_edge(Index cell, Index a, Index b, const SplitRule &rule,
                                 const Acceptance &acceptance);
   [[nodiscard]] Index new_vertex(const Vector<3> &x, Index dimension, Index lies_on);

@@ -19,7 +19,7 @@ constexpr double growth_between_sorts = 1.6;
 constexpr int n_sweeps = 3;
 
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
-void grow(Volume &volume, VolumePasses &passes) {
+void grow(Volume &volume, VolumePasses &passes, int threads) {
   double threshold = std::max(longest_edge, passes.longest_edge() / growth_step);
   std::size_t sorted_at = volume.n_vertices();
   int converged = 0;
@@ -33,7 +33,7 @@ void grow(Volume &volume, VolumePasses &passes) {
     passes.vertices({is_last_step ? .6 : .5, std::max(longest_edge, threshold), true});
     if (static_cast<double>(volume.mesh.vertices.size()) >
         growth_between_sorts * static_cast<double>(sorted_at)) {
-      renumber(volume);
+      renumber(volume, threads);
       sorted_at = volume.n_vertices();
     }
     passes.repair(.1);
@@ -46,7 +46,7 @@ void grow(Volume &volume, VolumePasses &passes) {
     if (is_lowered)
       threshold = std::max(longest_edge, threshold / growth_step);
   }
-  renumber(volume);
+  renumber(volume, threads);
 }
 
 /// Phase 3: sweeps at the final size.
@@ -100,10 +100,10 @@ VolumeResult remesh_volume(const VolumeInput &input,
   VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed,
                       settings.threads);
   watch.phase("size");
-  grow(volume, passes);
+  grow(volume, passes, settings.threads);
   watch.phase("shape");
   shape(passes);
-  renumber(volume);
+  renumber(volume, settings.threads);
 
   watch.phase("report");
   extract_facets(volume, out);
