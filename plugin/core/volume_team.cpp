@@ -6,7 +6,7 @@ std::vector<std::vector<Index>>
 deal_free_cells(Volume &volume, const std::vector<std::vector<Index>> &items) {
   // re-insertions and swaps make one more cell now and then; what finds no room is put
   // off
-  const auto share = [](std::size_t n) { return n / 2 + 64; };
+  const auto share = [](std::size_t n) { return n / 8 + 64; };
   std::size_t needed = 0;
   for (const std::vector<Index> &of_slab : items)
     needed += share(of_slab.size());
