@@ -80,7 +80,7 @@ sanitize-threads: setup ## Run the tests of threads with the thread sanitizer
 	  --config-settings cmake.define.ANISTAR_SANITIZE_THREADS=ON .
 	@PYTHONPATH=$(SANITIZED)/threads TSAN_OPTIONS=halt_on_error=1 OPENBLAS_NUM_THREADS=1 \
 	  LD_PRELOAD="$$(c++ -print-file-name=libtsan.so)" \
-	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/remesh/test_threads.py
+	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/remesh/test_threads.py tests/remesh3d/test_threads_3d.py
 
 fuzz: setup ## Run the property tests with many more and random examples
 	@$(PYTHON) -m pytest --hypothesis-profile=fuzz $(PYTEST_ARGS)

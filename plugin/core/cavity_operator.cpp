@@ -30,7 +30,24 @@ bool CavityOperator::propose(std::span<const Index> cells, Index apex,
     return false;
   if (!match() || (has_walls_ && (!constrain() || !separates_regions())))
     return false;
-  return surface_.empty() || (keeps_link() && keeps_surface_links(cells));
+  if (!surface_.empty() && !(keeps_link() && keeps_surface_links(cells)))
+    return false;
+  if (volume_.slab && !stays_in_slab(cells)) {
+    volume_.is_put_off = true;
+    return false;
+  }
+  return true;
+}
+
+/// The cells across the boundary of the cavity will have new neighbours.
+bool CavityOperator::stays_in_slab(std::span<const Index> cells) const {
+  std::size_t n_new = 0;
+  for (const Outer &outer : outers_) {
+    n_new += outer.kind == Kind::base;
+    if (outer.beyond.exists() && !volume_.is_inside(volume_.mesh.apex(outer.beyond)))
+      return false;
+  }
+  return n_new <= cells.size() + volume_.free_cells.size();
 }
 
 bool CavityOperator::is_lost(Index u, Index w) const {
@@ -459,11 +476,12 @@ void CavityOperator::commit(std::span<const Index> cells) {
     volume_.quality[c] = outer.quality;
     volume_.walled[c] = outer.constraint != none;
     volume_.touch(outer.cell);
+    volume_.data->slabs.add_cell(mesh.cells[c]);
     for (Index v : mesh.cells[c])
       mesh.vertex_cell[static_cast<std::size_t>(v)] = outer.cell;
   }
   for (std::size_t k = used; k < cells.size(); ++k)
-    mesh.free_cell(cells[k]);
+    volume_.free_cell(cells[k]);
   join_pairs();
 }
 

@@ -45,6 +45,8 @@ public:
   /// keep their shape, and the quality is acceptable.
   /// @param lost what vanishes: {none, none}, a vertex {v, none}, or an edge {a, b};
   /// boundary facets that contain it are replaced by those of the apex.
+  /// In a slab what would touch a cell outside of it is put off.
+  /// @pre the cells are in the slab.
   bool replace(std::span<const Index> cells, Index apex, std::array<Index, 2> lost,
                const Acceptance &acceptance);
 
@@ -136,6 +138,7 @@ private:
     return outer.kind == Kind::base ? outer.v[port.slot]
                                     : volume_.mesh.apex(outer.beyond);
   }
+  [[nodiscard]] bool stays_in_slab(std::span<const Index> cells) const;
   void join_pairs();
 };
 

@@ -13,7 +13,6 @@
 
 namespace anistar {
 
-
 struct RemeshSettings {
   ConsistencyMode consistency = ConsistencyMode::off;
   ConsistencyParameters parameters{};

@@ -94,6 +94,8 @@ public:
   /// of its length, or than the sizes across the feature bear.
   [[nodiscard]] bool strays(Index dimension, Index lies_on, const Vertex<3> &a,
                             const Vertex<3> &b, double hausdorff_number) const;
+  /// Whether a user's projection may be called, which only the calling thread may do.
+  [[nodiscard]] bool has_projection() const { return geometry_ && projection_; }
   [[nodiscard]] bool is_flat(Index dimension, Index lies_on) const {
     return dimension == 2   ? patch(lies_on).is_planar
            : dimension == 1 ? curve(lies_on).is_straight

@@ -1,5 +1,7 @@
 #include "volume.h"
 
+#include "parallel.h"
+
 namespace anistar {
 
 Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on,
@@ -9,6 +11,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
     v = mesh.add_vertex(vertex, dimension, background_cell);
     support.push_back(lies_on);
     vertex_clock.push_back(clock);
+    data->slabs.add_vertex(v);
     ridges.resize(mesh.vertices.size());
     return v;
   }
@@ -20,6 +23,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
   mesh.background_cell[i] = background_cell;
   support[i] = lies_on;
   vertex_clock[i] = clock;
+  data->slabs.add_vertex(v);
   return v;
 }
 
@@ -29,6 +33,11 @@ void Volume::remove_vertex(Index v) {
 }
 
 Index Volume::add_cell() {
+  if (slab) {
+    const Index c = free_cells.back();
+    free_cells.pop_back();
+    return c;
+  }
   const Index c = mesh.add_cell();
   if (static_cast<std::size_t>(c) >= quality.size()) {
     quality.push_back(0);
@@ -38,6 +47,15 @@ Index Volume::add_cell() {
   if (static_cast<std::size_t>(c) >= cell_stamp_.size())
     cell_stamp_.resize(mesh.cells.size() + mesh.cells.size() / 2, 0);
   return c;
+}
+
+void Volume::free_cell(Index c) {
+  if (!slab) {
+    mesh.free_cell(c);
+    return;
+  }
+  mesh.at(c)[0] = none;
+  free_cells.push_back(c);
 }
 
 void Volume::measure_cell(Index c) {
@@ -179,9 +197,9 @@ void take_along(std::vector<T> &values, const std::vector<Index> &rank, std::siz
 
 } // namespace
 
-void renumber(Volume &volume) {
+void renumber(Volume &volume, int threads) {
   Triangulation<3> &mesh = volume.mesh;
-  const std::vector<Index> rank = sort_along_curve<3>(mesh);
+  const std::vector<Index> rank = sort_along_curve<3>(mesh, threads);
   const std::size_t n = mesh.vertices.size();
   take_along(volume.support, rank, n);
   take_along(volume.vertex_clock, rank, n);
@@ -191,17 +209,20 @@ void renumber(Volume &volume) {
   volume.quality.resize(n_cells);
   volume.walled.resize(n_cells);
   volume.cell_clock.resize(n_cells);
-  for (std::size_t c = 0; c < n_cells; ++c) {
-    volume.measure_cell(static_cast<Index>(c));
-    volume.walled[c] = 0;
-    for (Index patch : mesh.constraints[c])
-      volume.walled[c] |= patch != none;
-    // a cell that changed has stamped its vertices: this is never too early
-    std::uint32_t clock = volume.clock;
-    for (Index v : mesh.cells[c])
-      clock = std::min(clock, volume.vertex_clock[static_cast<std::size_t>(v)]);
-    volume.cell_clock[c] = clock;
-  }
+  parallel_ranges(n_cells, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      volume.measure_cell(static_cast<Index>(c));
+      volume.walled[c] = 0;
+      for (Index patch : mesh.constraints[c])
+        volume.walled[c] |= patch != none;
+      // a cell that changed has stamped its vertices: this is never too early
+      std::uint32_t clock = volume.clock;
+      for (Index v : mesh.cells[c])
+        clock = std::min(clock, volume.vertex_clock[static_cast<std::size_t>(v)]);
+      volume.cell_clock[c] = clock;
+    }
+  });
+  volume.data->slabs = cut_into_slabs(mesh);
 }
 
 } // namespace anistar

@@ -3,34 +3,65 @@
 
 #include "background.h"
 #include "ridge_graph.h"
+#include "slabs.h"
 #include "surface_shape.h"
 #include "tet_shape.h"
 #include "triangulation.h"
 
 #include <cstdint>
+#include <memory>
 #include <numeric>
+#include <optional>
 
 namespace anistar {
 
 /// The mesh, what its facets and edges lie on, and what the passes remember of it. The
 /// constraint of a facet is its patch.
-struct Volume {
-  Volume(const Background<3> &field, SurfaceShape shape)
-      : background(field), surface(std::move(shape)) {}
-
-  Triangulation<3> mesh;
+struct VolumeData {
   const Background<3> &background;
   SurfaceShape surface;
+  Triangulation<3> mesh;
   RidgeGraph ridges;
   std::vector<Index>
       support; ///< patch of a vertex on a surface, curve of one on a ridge
-  std::vector<Index> free_vertices;
   std::vector<float> quality;       ///< of every cell
   std::vector<std::uint8_t> walled; ///< whether a cell has a constrained facet
   /// When a cell, or a cell at a vertex, last changed, in passes.
   std::vector<std::uint32_t> cell_clock, vertex_clock;
   std::uint32_t clock = 1;
+  Slabs slabs;
+};
 
+/// What one thread sees of the data, with marks of its own. It changes everything, or
+/// what is inside of a slab: cells all of whose vertices are in it. Cells between slabs
+/// stay as they are while there are several threads, so that none of them reads or
+/// writes what another one writes.
+struct Volume {
+  Volume(const Background<3> &field, SurfaceShape shape)
+      : data(std::make_shared<VolumeData>(field, std::move(shape))) {}
+  /// Another view of the same data.
+  explicit Volume(std::shared_ptr<VolumeData> shared) : data(std::move(shared)) {}
+
+  std::shared_ptr<VolumeData> data;
+  Triangulation<3> &mesh = data->mesh;
+  const Background<3> &background = data->background;
+  SurfaceShape &surface = data->surface;
+  RidgeGraph &ridges = data->ridges;
+  std::vector<Index> &support = data->support;
+  std::vector<float> &quality = data->quality;
+  std::vector<std::uint8_t> &walled = data->walled;
+  std::vector<std::uint32_t> &cell_clock = data->cell_clock;
+  std::vector<std::uint32_t> &vertex_clock = data->vertex_clock;
+  std::uint32_t &clock = data->clock;
+  std::vector<Index> free_vertices;
+
+  std::optional<Slab> slab;      ///< none: no bound
+  std::vector<Index> free_cells; ///< those of the slab
+  bool is_put_off = false;       ///< an operation would have left the slab
+
+  [[nodiscard]] bool is_inside(Index v) const {
+    return slab->contains(data->slabs.strip[static_cast<std::size_t>(v)]);
+  }
   [[nodiscard]] std::size_t n_vertices() const {
     return mesh.vertices.size() - free_vertices.size();
   }
@@ -51,6 +82,7 @@ struct Volume {
                    Index background_cell);
   void remove_vertex(Index v);
   Index add_cell();
+  void free_cell(Index c);
   void measure_cell(Index c);
   void touch(Index c);
 
@@ -119,7 +151,7 @@ struct EdgeWalls {
 };
 [[nodiscard]] EdgeWalls walls_at(const Volume &volume, const Shell &shell);
 
-/// Renumbers along a Hilbert curve.
-void renumber(Volume &volume);
+/// Renumbers along a Hilbert curve, and cuts into slabs.
+void renumber(Volume &volume, int threads = 1);
 
 } // namespace anistar

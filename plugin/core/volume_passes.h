@@ -6,6 +6,7 @@
 #include "monitor.h"
 
 #include <map>
+#include <memory>
 #include <string>
 
 namespace anistar {
@@ -14,6 +15,8 @@ namespace anistar {
 struct VolumeCounts {
   std::size_t splits = 0, collapses = 0, edge_swaps = 0, face_swaps = 0, moves = 0,
               insertions = 0, repairs = 0;
+
+  VolumeCounts &operator+=(const VolumeCounts &other);
 };
 
 /// Which cells and vertices a pass looks at: those that changed since it last ran.
@@ -47,9 +50,9 @@ void grow_cavity(Volume &volume, Index v, std::vector<Index> &star);
 class VolumePasses {
 public:
   VolumePasses(Volume &volume, Monitor &monitor, double hausdorff_number,
-               std::uint64_t seed)
+               std::uint64_t seed, int threads = 1)
       : volume_(volume), operator_(volume), monitor_(monitor),
-        hausdorff_number_(hausdorff_number), seed_(seed) {}
+        hausdorff_number_(hausdorff_number), seed_(seed), threads_(threads) {}
 
   /// Splits the longest edge of every cell that is too long, and edges that stray from
   /// their curved surface or ridge; @returns how many.
@@ -83,6 +86,7 @@ private:
   Monitor &monitor_;
   double hausdorff_number_; ///< of curved surfaces and ridges, relative to an edge
   std::uint64_t seed_;
+  int threads_;
   VolumeCounts counts_;
   std::array<std::uint32_t, 4> last_{};
   bool is_full_ = false; ///< a split had to be left out for want of vertices
@@ -90,10 +94,24 @@ private:
   Shell shell_;
   StarShapes shapes_;
   DensestShapes densest_;
+  struct Helper;
+  std::vector<std::shared_ptr<Helper>> team_; ///< a helper to a further thread
 
+  template <class SlabOf, class Visit>
+  void in_slabs(std::vector<Index> items, SlabOf slab_of, Visit visit);
+  template <class Visit>
+  void visit_in_slab(std::span<const Index> items, Visit visit,
+                     std::vector<Index> &put_off);
   [[nodiscard]] std::uint32_t begin(Pass pass);
   [[nodiscard]] bool go_on(std::size_t k, std::size_t n);
 
+  struct LongEdge {
+    Index a, b; ///< none: no edge is longer
+    double length;
+  };
+  [[nodiscard]] LongEdge longest_edge(Index c, double above) const;
+  [[nodiscard]] std::vector<std::uint8_t> due_cells(double above,
+                                                    std::uint32_t since) const;
   /// Uses star_.
   [[nodiscard]] bool split_edge(Index cell, Index a, Index b, const SplitRule &rule,
                                 const Acceptance &acceptance);
@@ -120,6 +138,7 @@ private:
   [[nodiscard]] Vector<3> ideal_step(Index v, const Matrix<3> &L, double &worst,
                                      double &sum);
   [[nodiscard]] bool try_move(Index v, const Vector<3> &step, double worst, double sum);
+  void treat_vertex(Index v, const VertexRule &rule, std::uint8_t &is_placed);
   void reinsert(Index v, double floor);
   [[nodiscard]] bool repair_cell(Index c);
 

@@ -36,7 +36,7 @@ constexpr double polished_below = .5;
 /// gamma stays below the first on 90 % of the edges and below the second on 99 %.
 constexpr double largest_agreeing_p90 = .3, largest_agreeing_p99 = .6;
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
-void grow(Volume &volume, VolumePasses &passes) {
+void grow(Volume &volume, VolumePasses &passes, int threads) {
   for (int round = 0; round < max_surface_rounds; ++round)
     if (passes.follow_surfaces() == 0)
       break;
@@ -54,7 +54,7 @@ void grow(Volume &volume, VolumePasses &passes) {
     passes.vertices({is_last_step ? .6 : .5, std::max(longest_edge, threshold), true});
     if (static_cast<double>(volume.mesh.vertices.size()) >
         growth_between_sorts * static_cast<double>(sorted_at)) {
-      renumber(volume);
+      renumber(volume, threads);
       sorted_at = volume.n_vertices();
     }
     passes.repair(.1);
@@ -71,7 +71,7 @@ void grow(Volume &volume, VolumePasses &passes) {
   const std::size_t changes = passes.counts().splits + passes.counts().collapses;
   if (static_cast<double>(changes) >
       change_between_sorts * static_cast<double>(volume.n_vertices()))
-    renumber(volume);
+    renumber(volume, threads);
 }
 
 /// Phase 3: sweeps at the final size.
@@ -199,15 +199,17 @@ VolumeResult remesh_volume(const VolumeInput &input,
   Stopwatch watch(monitor, out.seconds);
 
   watch.phase("background");
-  const Background<3> background(input.surface.points, input.cells, metric);
+  const Background<3> background(input.surface.points, input.cells, metric,
+                                 settings.threads);
   Volume volume =
       make_volume(input, metric, background, geometry, std::move(projection));
-  VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed);
+  VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed,
+                      settings.threads);
   watch.phase("size");
-  grow(volume, passes);
+  grow(volume, passes, settings.threads);
   watch.phase("shape");
   shape(passes);
-  renumber(volume);
+  renumber(volume, settings.threads);
   watch.phase("agreement");
   agree(volume, monitor, settings, out);
   certify_stars(volume, monitor, settings, watch, out);

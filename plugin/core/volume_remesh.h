@@ -15,7 +15,7 @@ struct VolumeSettings {
   double max_seconds = std::numeric_limits<double>::infinity();
   AgreementMode agreement = AgreementMode::when_possible;
   std::uint64_t seed = 0;
-  int threads = 1; ///< for the certificate and the report; the passes are serial
+  int threads = 1;
   ConsistencyMode consistency = ConsistencyMode::off;
   ConsistencyParameters parameters{};
 };

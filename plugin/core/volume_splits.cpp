@@ -1,3 +1,4 @@
+#include "parallel.h"
 #include "volume_passes.h"
 
 namespace anistar {
@@ -45,32 +46,51 @@ double VolumePasses::longest_edge() const {
   return longest;
 }
 
+/// The longest edge of a cell that is longer than a bound.
+VolumePasses::LongEdge VolumePasses::longest_edge(Index c, double above) const {
+  const Triangulation<3> &mesh = volume_.mesh;
+  LongEdge found{none, none, above};
+  for (const auto &[i, j] : cell_edges) {
+    const Index u = mesh.at(c)[i], w = mesh.at(c)[j];
+    const double l = fast_length(mesh.vertex(u), mesh.vertex(w));
+    if (l > found.length)
+      found = {u, w, l};
+  }
+  return found;
+}
+
+/// Whether a cell that changed since then may have something to split.
+std::vector<std::uint8_t> VolumePasses::due_cells(double above,
+                                                  std::uint32_t since) const {
+  std::vector<std::uint8_t> due(volume_.mesh.cells.size(), 0);
+  parallel_ranges(due.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto c = static_cast<Index>(k);
+      due[k] = volume_.mesh.is_alive(c) && volume_.cell_clock[k] >= since &&
+               (volume_.is_walled(c) || longest_edge(c, above).a != none);
+    }
+  });
+  return due;
+}
+
 std::size_t VolumePasses::split(const SplitRule &rule) {
   const std::uint32_t since = begin(Pass::split);
   const Triangulation<3> &mesh = volume_.mesh;
-  const std::size_t n = mesh.cells.size();
+  const std::vector<std::uint8_t> due = due_cells(rule.longest, since);
+  const std::size_t n = due.size();
   std::size_t done = 0;
   for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
     const auto c = static_cast<Index>(k);
-    if (!mesh.is_alive(c) || volume_.cell_clock[k] < since)
+    const bool is_new = volume_.cell_clock[k] == volume_.clock; // made by this pass
+    if ((due[k] == 0 && !is_new) || !mesh.is_alive(c))
       continue;
-    double longest = rule.longest;
-    Index a = none, b = none;
-    for (const auto &[i, j] : cell_edges) {
-      const Index u = mesh.at(c)[i], w = mesh.at(c)[j];
-      const double l = fast_length(mesh.vertex(u), mesh.vertex(w));
-      if (l > longest) {
-        longest = l;
-        a = u;
-        b = w;
-      }
-    }
+    const auto [a, b, length] = longest_edge(c, rule.longest);
     if (a == none) {
       done += volume_.is_walled(c) && split_curved(c);
       continue;
     }
     SplitRule local = rule;
-    if (longest > very_long)
+    if (length > very_long)
       local.closest *= relaxed;
     done += split_edge(c, a, b, local, {rule.floor, 1e-4, 0, 0, rule.share});
   }
@@ -166,7 +186,10 @@ Index VolumePasses::new_vertex(const Vector<3> &x, Index dimension, Index lies_o
   // the hint is that of the last vertex of the shell, which is near
   Index at = volume_.mesh.background_cell[static_cast<std::size_t>(shell_.a)];
   const Vertex<3> vertex = volume_.background.vertex(x, at);
-  return volume_.add_vertex(vertex, dimension, lies_on, at);
+  const Index v = volume_.add_vertex(vertex, dimension, lies_on, at);
+  std::vector<std::uint16_t> &strip = volume_.data->slabs.strip;
+  strip[static_cast<std::size_t>(v)] = strip[static_cast<std::size_t>(shell_.a)];
+  return v;
 }
 
 bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rule,

@@ -1,4 +1,4 @@
-#include "volume_passes.h"
+#include "volume_team.h"
 
 namespace anistar {
 namespace {
@@ -11,13 +11,23 @@ constexpr double swap_gain = 1e-3;
 
 void VolumePasses::swap(double quality) {
   const std::uint32_t since = begin(Pass::swap);
-  const std::size_t n = volume_.mesh.cells.size();
-  for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
-    const auto c = static_cast<Index>(k);
-    if (volume_.mesh.is_alive(c) && volume_.quality_of(c) <= quality &&
-        volume_.cell_clock[k] >= since)
-      (void)swap_cell(c);
-  }
+  const auto is_due = [&](Index c) {
+    return volume_.mesh.is_alive(c) && volume_.quality_of(c) <= quality &&
+           volume_.cell_clock[static_cast<std::size_t>(c)] >= since;
+  };
+  std::vector<Index> cells;
+  for (std::size_t k = 0; k < volume_.mesh.cells.size(); ++k)
+    if (is_due(static_cast<Index>(k)))
+      cells.push_back(static_cast<Index>(k));
+  in_slabs(
+      std::move(cells),
+      [&](Index c, int round) {
+        return volume_.data->slabs.of_cell(volume_.mesh.at(c), round);
+      },
+      [=](VolumePasses &passes, Index c) {
+        if (is_due(c))
+          (void)passes.swap_cell(c);
+      });
 }
 
 bool VolumePasses::swap_cell(Index c) {
@@ -27,16 +37,24 @@ bool VolumePasses::swap_cell(Index c) {
       if (remove_edge(c, cell[i], cell[j])) {
         ++counts_.edge_swaps;
         return true;
+      } else if (volume_.is_put_off) {
+        return false;
       }
   for (std::size_t i = 0; i < 4; ++i) {
     const HalfFacet h(c, i), beyond = volume_.mesh.opposite(h);
     if (!beyond.exists() || volume_.mesh.constraint(h) != none)
       continue;
+    if (volume_.slab && !volume_.is_inside(volume_.mesh.apex(beyond))) {
+      volume_.is_put_off = true;
+      return false;
+    }
     const std::array<Index, 2> both{c, beyond.cell()};
     if (operator_.replace(both, cell[i], {none, none}, improvement(swap_gain))) {
       ++counts_.face_swaps;
       return true;
     }
+    if (volume_.is_put_off)
+      return false;
   }
   return false;
 }
@@ -69,6 +87,12 @@ bool VolumePasses::remove_edge(Index c, Index a, Index b) {
     return false;
   if (walls.n != 0 && (walls.n != 2 || walls.patch[0] != walls.patch[1]))
     return false;
+  if (volume_.slab)
+    for (std::size_t k = 0; k < n; ++k)
+      if (!volume_.is_inside(shell_.ring[k])) {
+        volume_.is_put_off = true;
+        return false;
+      }
   double worst = 1;
   for (Index cell : shell_.all())
     worst = std::min(worst, volume_.quality_of(cell));
@@ -80,6 +104,8 @@ bool VolumePasses::remove_edge(Index c, Index a, Index b) {
     if (operator_.replace(shell_.all(), shell_.ring[k], {a, b},
                           improvement(swap_gain, hausdorff_number_)))
       return true;
+    if (volume_.is_put_off)
+      return false;
   }
   return false;
 }

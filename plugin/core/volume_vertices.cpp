@@ -1,6 +1,7 @@
 #include "volume_passes.h"
 
 #include "random.h"
+#include "volume_team.h"
 
 namespace anistar {
 namespace {
@@ -229,6 +230,8 @@ void VolumePasses::move(Index v) {
 void VolumePasses::reinsert(Index v, double floor) {
   const std::size_t n_star = star_.size();
   grow_cavity(volume_, v, star_);
+  if (volume_.is_put_off)
+    return;
   if (star_.size() == n_star)
     return;
   if (operator_.replace(star_, v, {none, none},
@@ -236,22 +239,40 @@ void VolumePasses::reinsert(Index v, double floor) {
     ++counts_.insertions;
 }
 
+/// @param is_placed whether v waits only for its re-insertion
+void VolumePasses::treat_vertex(Index v, const VertexRule &rule,
+                                std::uint8_t &is_placed) {
+  star_of(volume_, v, star_);
+  if (is_placed == 0) {
+    if (collapse_shortest(v, rule) || volume_.is_put_off)
+      return;
+    move(v);
+    is_placed = 1;
+  }
+  if (rule.reinsert)
+    reinsert(v, rule.reinsertion_floor);
+}
+
 void VolumePasses::vertices(const VertexRule &rule) {
   const std::uint32_t since = begin(Pass::vertex);
   const Triangulation<3> &mesh = volume_.mesh;
-  const std::size_t n = mesh.vertices.size();
-  for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
-    const auto v = static_cast<Index>(k);
-    if (!mesh.is_used(v) || volume_.vertex_clock[k] < since ||
-        mesh.feature[k] == Triangulation<3>::corner)
-      continue;
-    star_of(volume_, v, star_);
-    if (collapse_shortest(v, rule))
-      continue;
-    move(v);
-    if (rule.reinsert)
-      reinsert(v, rule.reinsertion_floor);
-  }
+  std::vector<Index> all;
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k)
+    if (mesh.is_used(static_cast<Index>(k)) &&
+        mesh.feature[k] != Triangulation<3>::corner)
+      all.push_back(static_cast<Index>(k));
+  std::vector<std::uint8_t> is_placed(mesh.vertices.size(), 0);
+  in_slabs(
+      std::move(all),
+      [&](Index v, int round) { // the graph of ridges is no slab's
+        return volume_.feature(v) <= 1 ? Slabs::nowhere
+                                       : volume_.data->slabs.of_star(v, round);
+      },
+      [&, since](VolumePasses &passes, Index v) {
+        const auto k = static_cast<std::size_t>(v);
+        if (mesh.is_used(v) && volume_.vertex_clock[k] >= since)
+          passes.treat_vertex(v, rule, is_placed[k]);
+      });
 }
 
 bool keeps_surfaces(const Volume &volume, std::span<const Index> star, Index v,
@@ -338,6 +359,10 @@ void grow_cavity(Volume &volume, Index v, std::vector<Index> &star) {
       if (!beyond.exists() || volume.is_marked_cell(beyond.cell()) ||
           (volume.is_walled(c) && mesh.constraint(h) != none))
         continue;
+      if (volume.slab && !volume.is_inside(mesh.apex(beyond))) {
+        volume.is_put_off = true;
+        return;
+      }
       const Cell<3> &t = mesh.at(beyond.cell());
       if (is_in_ball(here.M, mesh.vertex(t[0]).x, mesh.vertex(t[1]).x,
                      mesh.vertex(t[2]).x, mesh.vertex(t[3]).x, here.x) &&
