@@ -39,17 +39,6 @@ bool CavityOperator::propose(std::span<const Index> cells, Index apex,
   return true;
 }
 
-/// The cells across the boundary of the cavity will have new neighbours.
-bool CavityOperator::stays_in_slab(std::span<const Index> cells) const {
-  std::size_t n_new = 0;
-  for (const Outer &outer : outers_) {
-    n_new += outer.kind == Kind::base;
-    if (outer.beyond.exists() && !volume_.is_inside(volume_.mesh.apex(outer.beyond)))
-      return false;
-  }
-  return n_new <= cells.size() + volume_.free_cells.size();
-}
-
 bool CavityOperator::is_lost(Index u, Index w) const {
   return lost_[1] == none
              ? lost_[0] != none && (u == lost_[0] || w == lost_[0])
