@@ -1,5 +1,7 @@
 #include "facet_margins.h"
 
+#include "parallel.h"
+
 namespace anistar {
 
 FacetStar facet_star(const Triangulation<3> &mesh, HalfFacet h) {
@@ -14,6 +16,19 @@ void FacetMargins::look(HalfFacet h) {
     return;
   }
   put(h, as_margin(facet_margin(facet_star(mesh_, h))));
+}
+
+void FacetMargins::fill(int threads) {
+  parallel_ranges(mesh_.cells.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto c = static_cast<Index>(k);
+      for (std::size_t i = 0; mesh_.is_alive(c) && i < 4; ++i) {
+        const HalfFacet h(c, i);
+        if (!mesh_.opposite(h).exists() || mesh_.opposite(h).cell() > c)
+          look(h);
+      }
+    }
+  });
 }
 
 void FacetMargins::forget(Index c) {

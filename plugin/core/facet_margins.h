@@ -23,6 +23,8 @@ public:
     return own;
   }
   [[nodiscard]] bool fails(HalfFacet h) { return at(h) > 0; }
+  /// Finds all margins, each from the first cell of its facet.
+  void fill(int threads);
   void put(HalfFacet h, float margin) {
     known_[static_cast<std::size_t>(h.cell())][h.facet()] = margin;
     const HalfFacet other = mesh_.opposite(h);

@@ -40,8 +40,9 @@ public:
         state_(volume, hausdorff_number), relocation_(state_),
         repair_(state_, monitor) {}
 
-  VolumeAgreementCounts run() {
+  VolumeAgreementCounts run(int threads) {
     const std::uint32_t start = ++volume_.clock;
+    state_.margins.fill(threads);
     scan();
     counts_.facets_before = failing_.size();
     counts_.stop = reduce();
@@ -195,8 +196,9 @@ private:
 } // namespace
 
 VolumeAgreementCounts agree_volume(Volume &volume, Monitor &monitor,
-                                   double hausdorff_number, std::uint64_t seed) {
-  return VolumeAgreement(volume, monitor, hausdorff_number, seed).run();
+                                   double hausdorff_number, std::uint64_t seed,
+                                   int threads) {
+  return VolumeAgreement(volume, monitor, hausdorff_number, seed).run(threads);
 }
 
 } // namespace anistar

@@ -39,10 +39,12 @@ struct VolumeAgreementCounts {
 /// Swaps, re-insertions and moves at the facets that fail the five-metric test (see
 /// facet_margin), scored by the exact change in their number; where these are stuck, a
 /// collapse or an insertion; then a polish of the shapes that lets no more facets fail.
-/// The list of failing facets is maintained, the mesh is searched once. No quality
+/// The list of failing facets is maintained, the mesh is searched
+/// once, on several threads. No quality
 /// falls below agreement_floor that was not below before.
 /// @param hausdorff_number of curved surfaces, as in VolumePasses
 VolumeAgreementCounts agree_volume(Volume &volume, Monitor &monitor,
-                                   double hausdorff_number, std::uint64_t seed);
+                                   double hausdorff_number, std::uint64_t seed,
+                                   int threads);
 
 } // namespace anistar

@@ -4,6 +4,7 @@
 #include "cavity_operator.h"
 #include "densest_shapes.h"
 #include "monitor.h"
+#include "vertex_star.h"
 
 #include <map>
 #include <memory>
@@ -36,15 +37,6 @@ struct VertexRule {
   double collapse_floor = .15;
   double reinsertion_floor = .5;
 };
-
-/// Whether the facets of surfaces at v keep their side, and stay near curved ones, when
-/// v goes to x.
-[[nodiscard]] bool keeps_surfaces(const Volume &volume, std::span<const Index> star,
-                                  Index v, const Vector<3> &x, double hausdorff_number);
-
-/// Adds to the star of v, marked, the cells whose circumball in the metric of v
-/// contains v, as far as they can be reached without crossing a constrained facet.
-void grow_cavity(Volume &volume, Index v, std::vector<Index> &star);
 
 /// Everything the passes share.
 class VolumePasses {

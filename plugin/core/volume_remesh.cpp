@@ -106,7 +106,8 @@ std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
     // the cells of a mesh that is not refined can reach across the whole domain
     return std::string("skipped: stopped by ") + name_of(monitor.reason());
   // it takes as long as all the rest, for a property that only some ask for
-  if (settings.agreement == AgreementMode::when_possible)
+  if (settings.agreement == AgreementMode::when_possible &&
+      settings.consistency == ConsistencyMode::off)
     return "skipped: not asked for, and in 3D it takes as long as the remeshing";
   const DistortionQuantiles gamma =
       distortion_quantiles(volume.mesh.vertices, volume.mesh.cells, settings.threads);
@@ -124,9 +125,9 @@ void agree(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
   out.agreement = reason_to_skip(volume, monitor, settings);
   if (!out.agreement.empty())
     return;
-  const VolumeAgreementCounts agreed =
-      agree_volume(volume, monitor, settings.hausdorff_number, settings.seed);
-  renumber(volume);
+  const VolumeAgreementCounts agreed = agree_volume(
+      volume, monitor, settings.hausdorff_number, settings.seed, settings.threads);
+  renumber(volume, settings.threads);
   out.agreement = "done";
   if (agreed.facets_after > 0)
     out.agreement += std::string(", ") + name_of(agreed.stop) + " with " +
@@ -166,12 +167,13 @@ void extract_facets(const Volume &volume, VolumeResult &out) {
   }
 }
 
-/// Phases 5 and 6, unless a budget has been spent. @pre the mesh was renumbered.
+/// Phases 5 and 6 where agreement or consistency was asked for, unless a budget has
+/// been spent: the certificate takes longer than a pass. @pre the mesh was renumbered.
 void certify_stars(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
                    Stopwatch &watch, VolumeResult &out) {
   const bool inserting = settings.consistency != ConsistencyMode::off;
   if (monitor.reason() != StopReason::finished ||
-      (settings.agreement == AgreementMode::off && !inserting))
+      (settings.agreement != AgreementMode::on && !inserting))
     return;
   watch.phase("certificate");
   DelaunayBits known = delaunay_bits<3>(certified(volume.mesh), settings.threads);
@@ -185,7 +187,7 @@ void certify_stars(Volume &volume, Monitor &monitor, const VolumeSettings &setti
   out.was_checked = true;
   out.simplex_ok = fractions.simplex_ok;
   out.star_ok = fractions.star_ok;
-  renumber(volume);
+  renumber(volume, settings.threads);
 }
 
 } // namespace

@@ -174,7 +174,7 @@ bool VolumePasses::widen_shell(Index v) {
                         mesh.vertex(v)) > hidden)
         continue;
       if (!beyond.exists() || mesh.constraint(h) != none ||
-          star_.size() == Shell::capacity || has_ridge(mesh.at(beyond.cell())))
+          star_.size() == Shell::capacity || has_ridge(volume_, mesh.at(beyond.cell())))
         return false;
       volume_.mark_cell(beyond.cell());
       star_.push_back(beyond.cell());

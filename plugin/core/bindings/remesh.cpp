@@ -63,13 +63,7 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
   result["cell_tags"] = owned(std::move(out.cell_tags), {out.cells.size()});
   result["facets"] = rows<Index, 2>(out.facets);
   result["facet_tags"] = owned(std::move(out.facet_tags), {out.facets.size()});
-  if (out.was_checked) {
-    result["simplex_ok"] = out.simplex_ok;
-    result["star_ok"] = out.star_ok;
-  } else {
-    result["simplex_ok"] = nb::none();
-    result["star_ok"] = nb::none();
-  }
+  put_certified(result, out.was_checked, out.simplex_ok, out.star_ok);
   result["agreement"] = out.agreement;
   result["consistency"] = consistency_dict(out.consistency);
   result["distortion"] = as_dict(out.distortion);

@@ -42,6 +42,12 @@ AgreementMode agreement_mode(const std::string &name) {
   throw std::invalid_argument("unknown agreement mode '" + name + "'");
 }
 
+void put_certified(nb::dict &result, bool was_checked, double simplex_ok,
+                   double star_ok) {
+  result["simplex_ok"] = was_checked ? nb::object(nb::float_(simplex_ok)) : nb::none();
+  result["star_ok"] = was_checked ? nb::object(nb::float_(star_ok)) : nb::none();
+}
+
 Monitor::Progress progress_of(nb::handle callback) {
   return [callback](const std::string &phase, double fraction) {
     nb::gil_scoped_acquire acquire;

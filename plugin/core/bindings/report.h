@@ -30,6 +30,10 @@ void put_vertices(nb::dict &result, const std::vector<Vertex<d>> &vertices) {
 /// @throws std::invalid_argument for an unknown name
 [[nodiscard]] AgreementMode agreement_mode(const std::string &name);
 
+/// The certified fractions; None when they are not known.
+void put_certified(nb::dict &result, bool was_checked, double simplex_ok,
+                   double star_ok);
+
 /// Tells Python about progress and lets it interrupt: Ctrl-C, or an exception in the
 /// user's callback, unwinds the core.
 /// A handle, not an object: it is copied and destroyed while the GIL is released.
