@@ -15,11 +15,8 @@
 
 namespace anistar {
 
-/// The mesh, what its facets and edges lie on, and what the passes remember of it. The
-/// constraint of a facet is its patch.
-struct VolumeData {
-  const Background<3> &background;
-  SurfaceShape surface;
+/// The mesh and what the passes remember of it. The constraint of a facet is its patch.
+struct VolumeState {
   Triangulation<3> mesh;
   RidgeGraph ridges;
   std::vector<Index>
@@ -28,8 +25,17 @@ struct VolumeData {
   std::vector<std::uint8_t> walled; ///< whether a cell has a constrained facet
   /// When a cell, or a cell at a vertex, last changed, in passes.
   std::vector<std::uint32_t> cell_clock, vertex_clock;
-  std::uint32_t clock = 1;
   Slabs slabs;
+};
+
+/// The same with what its facets and edges lie on, and its metric.
+struct VolumeData : VolumeState {
+  VolumeData(const Background<3> &field, SurfaceShape shape)
+      : background(field), surface(std::move(shape)) {}
+
+  const Background<3> &background;
+  SurfaceShape surface;
+  std::uint32_t clock = 1;
 };
 
 /// What one thread sees of the data, with marks of its own. It changes everything, or
@@ -41,6 +47,8 @@ struct Volume {
       : data(std::make_shared<VolumeData>(field, std::move(shape))) {}
   /// Another view of the same data.
   explicit Volume(std::shared_ptr<VolumeData> shared) : data(std::move(shared)) {}
+  Volume(const Volume &) = delete; // it would be a view, not a copy
+  Volume(Volume &&) = default;
 
   std::shared_ptr<VolumeData> data;
   Triangulation<3> &mesh = data->mesh;

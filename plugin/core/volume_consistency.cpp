@@ -287,20 +287,19 @@ private:
 
 /// What a run must be able to return to.
 struct Snapshot {
-  Volume volume;
+  Snapshot(const Volume &volume, const DelaunayBits &bits, double fraction)
+      : state(*volume.data), free_vertices(volume.free_vertices), known(bits),
+        failing(fraction) {}
+
+  VolumeState state;
+  std::vector<Index> free_vertices;
   DelaunayBits known;
   double failing;
 };
 
-void restore(Volume &volume, Volume &&from) {
-  volume.mesh = std::move(from.mesh);
-  volume.ridges = std::move(from.ridges);
-  volume.support = std::move(from.support);
+void restore(Volume &volume, Snapshot &&from) {
+  static_cast<VolumeState &>(*volume.data) = std::move(from.state);
   volume.free_vertices = std::move(from.free_vertices);
-  volume.quality = std::move(from.quality);
-  volume.walled = std::move(from.walled);
-  volume.cell_clock = std::move(from.cell_clock);
-  volume.vertex_clock = std::move(from.vertex_clock);
 }
 
 /// Decides again where the mesh has changed since the clock showed `since`.
@@ -330,7 +329,7 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
       (1 + parameters.max_growth) * static_cast<double>(volume.n_vertices());
   Progress progress{failing_fraction(volume.mesh, known.bits)};
   progress.reference = progress.failing;
-  std::optional<Snapshot> best(Snapshot{volume, known, progress.failing});
+  std::optional<Snapshot> best(std::in_place, volume, known, progress.failing);
   for (counts.rounds = 0;; ++counts.rounds) {
     const std::vector<BadCell<3>> bad = rounds.bad_cells(known.bits);
     if (bad.empty())
@@ -351,11 +350,11 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
     renew(volume, since, threads, known);
     progress.note(failing_fraction(volume.mesh, known.bits));
     if (progress.failing < best->failing)
-      best.emplace(Snapshot{volume, known, progress.failing});
+      best.emplace(volume, known, progress.failing);
   }
   if (progress.failing > best->failing) {
-    restore(volume, std::move(best->volume));
     known = std::move(best->known);
+    restore(volume, std::move(*best));
   }
   return counts;
 }
