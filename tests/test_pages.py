@@ -22,7 +22,7 @@ PAGES = [
 def commands(page):
     """Every command in a block for the shell, and those in the text that are complete."""
     for block in code_blocks(page, "sh"):
-        for line in block.splitlines():
+        for line in block.replace("\\\n", " ").splitlines():
             words = shlex.split(line, comments=True)
             if words and words[0].removeprefix(".venv/bin/") == "anistar":
                 yield words[1:]
@@ -79,7 +79,7 @@ def test_the_pipeline_of_the_page_on_vtk_adapts_a_file(tmp_path):
     pytest.importorskip("vtkmodules")
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-    code, _ = code_blocks("docs/how-to/vtk.md", "python")
+    code, *_ = code_blocks("docs/how-to/vtk.md", "python")
     mesh = square(8)
     anistar.write(tmp_path / "in.vtu", mesh, {"pressure": np.tanh(9 * mesh.points[:, 0] - 4)})
     reader = vtkXMLUnstructuredGridReader()
