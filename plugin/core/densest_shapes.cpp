@@ -19,10 +19,11 @@ void DensestShapes::add(const Vertex<3> &a, const Vertex<3> &b, const Vertex<3> 
 
 void DensestShapes::evaluate(const Vertex<3> &vertex, double poor) {
   const double x = vertex.x[0], y = vertex.x[1], z = vertex.x[2];
-  const auto &M = vertex.M.entries;
+  const double weight = vertex.weight;
+  const std::array<double, 6> M = vertex.M.entries;
   const auto densest = [&](std::size_t k, std::size_t i) {
-    const double here = M[k], there = m_[k][i];
-    return vertex.weight < weight_[i] ? here : there;
+    const double there = m_[k][i];
+    return weight < weight_[i] ? M[k] : there;
   };
   for (std::size_t i = 0; i < n_; ++i) {
     const double m[6] = {densest(0, i), densest(1, i), densest(2, i),
