@@ -20,6 +20,7 @@ bool CavityOperator::propose(std::span<const Index> cells, Index apex,
                              std::array<Index, 2> lost, const Acceptance &acceptance) {
   apex_ = apex;
   lost_ = lost;
+  is_apex_in_place_ = acceptance.is_apex_in_place;
   if (!collect(cells, acceptance) || !keeps_vertices(cells))
     return false;
   if (acceptance.longest > 0 && !keeps_lengths(acceptance.longest))
@@ -102,8 +103,11 @@ bool CavityOperator::add_outer(HalfFacet h, double threshold) {
       outer.apex_at = k;
     }
   if (outer.kind == Kind::base) {
-    const double q = shape_quality(mesh.vertex(outer.v[0]), mesh.vertex(outer.v[1]),
-                                   mesh.vertex(outer.v[2]), mesh.vertex(apex_));
+    const double q =
+        is_apex_in_place_ && mesh.apex(h) == apex_ // the cell stays as it is
+            ? volume_.quality_of(h.cell())
+            : shape_quality(mesh.vertex(outer.v[0]), mesh.vertex(outer.v[1]),
+                            mesh.vertex(outer.v[2]), mesh.vertex(apex_));
     if (q < threshold || q <= 0)
       return false;
     outer.quality = static_cast<float>(q);

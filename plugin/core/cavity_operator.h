@@ -23,6 +23,9 @@ struct Acceptance {
   /// When positive, this share of the quality of the worst old cell is enough too:
   /// where the metric is far thinner than the cells, nothing reaches a fixed floor.
   double share = 0;
+  /// Whether the apex is where it was when its cells were measured: those of them that
+  /// stay need not be measured again.
+  bool is_apex_in_place = false;
 
   [[nodiscard]] double threshold(double old_minimum) const {
     const double least = std::min(floor, old_minimum + gain);
@@ -98,6 +101,7 @@ private:
 
   Volume &volume_;
   Index apex_ = none;
+  bool is_apex_in_place_ = false;
   std::array<Index, 2> lost_{};
   std::vector<Outer> outers_;
   std::vector<SurfaceEdge> surface_;

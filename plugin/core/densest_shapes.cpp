@@ -19,22 +19,28 @@ void DensestShapes::add(const Vertex<3> &a, const Vertex<3> &b, const Vertex<3> 
 
 void DensestShapes::evaluate(const Vertex<3> &vertex, double poor) {
   const double x = vertex.x[0], y = vertex.x[1], z = vertex.x[2];
-  const auto &M = vertex.M.entries;
+  const double weight = vertex.weight;
+  const std::array<double, 6> M = vertex.M.entries;
+  const auto densest = [&](std::size_t k, std::size_t i) {
+    const double there = m_[k][i];
+    return weight < weight_[i] ? M[k] : there;
+  };
   for (std::size_t i = 0; i < n_; ++i) {
-    const bool is_denser = vertex.weight < weight_[i];
-    double m[6];
-    for (std::size_t k = 0; k < 6; ++k)
-      m[k] = is_denser ? M[k] : m_[k][i];
+    const double m[6] = {densest(0, i), densest(1, i), densest(2, i),
+                         densest(3, i), densest(4, i), densest(5, i)};
     cubed_[i] = cubed_shape(a_[0][i] - x, a_[1][i] - y, a_[2][i] - z, b_[0][i] - x,
                             b_[1][i] - y, b_[2][i] - z, c_[0][i] - x, c_[1][i] - y,
                             c_[2][i] - z, m);
   }
-  const auto bound = static_cast<float>(poor);
-  float least = 1, sum = 0, missing = 0;
   for (std::size_t i = 0; i < n_; ++i) {
     const float root =
         detail::cube_root(static_cast<float>(std::max(cubed_[i], 1e-30)));
-    const float q = cubed_[i] > 0 ? root : -1.f;
+    quality_[i] = cubed_[i] > 0 ? root : -1.f;
+  }
+  const auto bound = static_cast<float>(poor);
+  float least = 1, sum = 0, missing = 0;
+  for (std::size_t i = 0; i < n_; ++i) {
+    const float q = quality_[i];
     least = std::min(least, q);
     sum += q;
     missing += std::max(0.f, bound - q);

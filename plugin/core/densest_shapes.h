@@ -26,6 +26,7 @@ private:
   double a_[3][capacity], b_[3][capacity], c_[3][capacity];
   double m_[6][capacity], weight_[capacity]; ///< of the densest of the three
   double cubed_[capacity];
+  float quality_[capacity];
   double minimum_ = 0, sum_ = 0, missing_ = 0;
 };
 

@@ -52,7 +52,13 @@ VolumePasses::LongEdge VolumePasses::longest_edge(Index c, double above) const {
   LongEdge found{none, none, above};
   for (const auto &[i, j] : cell_edges) {
     const Index u = mesh.at(c)[i], w = mesh.at(c)[j];
-    const double l = fast_length(mesh.vertex(u), mesh.vertex(w));
+    const Vertex<3> &p = mesh.vertex(u), &q = mesh.vertex(w);
+    const Vector<3> e = q.x - p.x;
+    const double square = found.length * found.length;
+    // a mean is not above both
+    if (quadratic<3>(p.M, e) <= square && quadratic<3>(q.M, e) <= square)
+      continue;
+    const double l = fast_length(p, q);
     if (l > found.length)
       found = {u, w, l};
   }

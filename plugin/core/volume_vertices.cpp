@@ -109,7 +109,11 @@ bool VolumePasses::collapse_shortest(Index v, const VertexRule &rule) {
       if (!volume_.mark_vertex(u))
         continue;
       const Vertex<3> &there = mesh.vertex(u);
-      if (quadratic<3>(here.M, Vector<3>(there.x - here.x)) > clearly_longer * shortest)
+      const Vector<3> e = there.x - here.x;
+      const double square = quadratic<3>(here.M, e);
+      // a mean is not below both
+      if (square > clearly_longer * shortest ||
+          std::min(square, quadratic<3>(there.M, e)) >= shortest * shortest)
         continue;
       const double l = fast_length(here, there);
       if (l < shortest && may_collapse(v, u)) {
@@ -234,8 +238,11 @@ void VolumePasses::reinsert(Index v, double floor) {
     return;
   if (star_.size() == n_star)
     return;
-  if (operator_.replace(star_, v, {none, none},
-                        {std::min(floor, star_quality()), 0, longest_reinserted}))
+  const Acceptance acceptance{.floor = std::min(floor, star_quality()),
+                              .gain = 0,
+                              .longest = longest_reinserted,
+                              .is_apex_in_place = true};
+  if (operator_.replace(star_, v, {none, none}, acceptance))
     ++counts_.insertions;
 }
 
