@@ -3,6 +3,7 @@
 #include "bounded_distortion.h"
 #include "ellipse_sampler.h"
 #include "vertex_mover.h"
+#include "volume_star_check.h"
 
 #include <optional>
 #include <utility>

@@ -26,9 +26,4 @@ refine_until_consistent(Volume &volume, Monitor &monitor,
                         const ConsistencyParameters &parameters, std::uint64_t seed,
                         int threads, DelaunayBits &known);
 
-/// The mesh as the certificate sees it.
-[[nodiscard]] inline CertifiedMesh<3> certified(const Triangulation<3> &mesh) {
-  return {mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints};
-}
-
 } // namespace anistar
