@@ -186,7 +186,8 @@ void certify_stars(Volume &volume, Monitor &monitor, const VolumeSettings &setti
   if (inserting) {
     watch.phase("consistency");
     out.consistency = refine_until_consistent(volume, monitor, settings.parameters,
-                                              settings.seed, settings.threads, known);
+                                              settings.hausdorff_number, settings.seed,
+                                              settings.threads, known);
     out.counts["consistency_moves"] = static_cast<double>(out.consistency.moves);
   }
   const CertifiedFractions fractions = certified_fractions(volume.mesh, known.bits);
