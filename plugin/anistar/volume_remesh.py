@@ -53,7 +53,7 @@ def remesh_volume(
         If an option asks for what exists in 2D only.
     """
     if options.until_consistent == "pure":
-        raise ValueError('until_consistent="pure" exists in 2D only')
+        raise ValueError('until_consistent="pure" exists in 2D only: use until_consistent=True')
     raw: dict[str, Any] = _core.remesh3(
         mesh.points * scale,
         mesh.cells,

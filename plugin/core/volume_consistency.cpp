@@ -3,6 +3,8 @@
 #include "bounded_distortion.h"
 #include "ellipse_sampler.h"
 #include "vertex_mover.h"
+#include "volume_agreement.h"
+#include "volume_star_check.h"
 
 #include <optional>
 #include <utility>
@@ -22,6 +24,10 @@ constexpr double any_progress = .995;
 /// for what it costs. More places are tried only when at most so many cells fail.
 constexpr double many_failing = .3;
 constexpr std::size_t few_failing = 100;
+/// What is stuck goes through agreement and the star check again, every so many rounds
+/// that brought nothing: they swap facets of surfaces and remove vertices, which the
+/// rules do not.
+constexpr int agreement_period = 5;
 /// The clock is looked at after so many bad cells.
 constexpr std::size_t cells_between_looks = 32;
 /// New vertices keep this distance from the others in their own metric (packing).
@@ -55,6 +61,10 @@ struct Progress {
       reference = failing;
       since_best = 0;
     }
+  }
+  [[nodiscard]] bool asks_for_agreement(std::size_t n_bad) const {
+    return n_bad <= few_failing &&
+           since_best % agreement_period == agreement_period - 1;
   }
   [[nodiscard]] Effort effort(std::size_t n_bad) const {
     const bool is_stuck = since_best > 3 && n_bad <= few_failing;
@@ -321,8 +331,8 @@ void renew(const Volume &volume, std::uint32_t since, int threads,
 
 ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
                                           const ConsistencyParameters &parameters,
-                                          std::uint64_t seed, int threads,
-                                          DelaunayBits &known) {
+                                          double hausdorff_number, std::uint64_t seed,
+                                          int threads, DelaunayBits &known) {
   ConsistencyCounts counts;
   Rounds rounds(volume, monitor, parameters, seed, counts);
   const double most =
@@ -346,8 +356,16 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
     if (!counts.stop.empty())
       break;
     const std::uint32_t since = ++volume.clock;
-    rounds.treat(bad, counts.rounds, progress.effort(bad.size()));
+    const std::uint64_t round_seed = seed + 1 + std::uint64_t(counts.rounds);
+    const bool agreeing = progress.asks_for_agreement(bad.size());
+    if (agreeing)
+      counts.moves +=
+          agree_volume(volume, monitor, hausdorff_number, round_seed, threads).moves;
+    else
+      rounds.treat(bad, counts.rounds, progress.effort(bad.size()));
     renew(volume, since, threads, known);
+    if (agreeing)
+      counts.moves += mend_stars(volume, monitor, hausdorff_number, round_seed, known);
     progress.note(failing_fraction(volume.mesh, known.bits));
     if (progress.failing < best->failing)
       best.emplace(volume, known, progress.failing);

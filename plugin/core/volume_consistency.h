@@ -16,19 +16,15 @@ namespace anistar {
 /// bounded number of points: the fewest slivers, then the lowest AgreementCost. A round
 /// treats bad cells of all rules, the first rule first, that share no vertex. At each
 /// of them a vertex is moved if that makes fewer facets fail, else a point is inserted
-/// that does; what is stuck is tried harder. When it does not end consistent, the best
-/// mesh seen is left.
+/// that does; what is stuck is tried harder, and
+/// goes through agreement and the star check again. When it does not end consistent,
+/// the best mesh seen is left.
 ///
+/// @param hausdorff_number of curved surfaces, as in VolumePasses
 /// @param known the answers for the mesh, which has no free cells; afterwards for the
 /// mesh that is left
-[[nodiscard]] ConsistencyCounts
-refine_until_consistent(Volume &volume, Monitor &monitor,
-                        const ConsistencyParameters &parameters, std::uint64_t seed,
-                        int threads, DelaunayBits &known);
-
-/// The mesh as the certificate sees it.
-[[nodiscard]] inline CertifiedMesh<3> certified(const Triangulation<3> &mesh) {
-  return {mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints};
-}
+[[nodiscard]] ConsistencyCounts refine_until_consistent(
+    Volume &volume, Monitor &monitor, const ConsistencyParameters &parameters,
+    double hausdorff_number, std::uint64_t seed, int threads, DelaunayBits &known);
 
 } // namespace anistar

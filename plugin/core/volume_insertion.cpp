@@ -45,6 +45,7 @@ EdgeFeature feature_of(const Volume &volume, const Shell &shell) {
   if (out.ridge != none) {
     out.dimension = 1;
     out.lies_on = volume.ridges.at(out.ridge).curve;
+    out.is_frozen = out.is_frozen || volume.surface.curve(out.lies_on).is_frozen;
   } else if (walls.n > 0) {
     out.dimension = 2;
     out.lies_on = walls.patch[0];

@@ -159,6 +159,32 @@ void VolumeRelocation::keep_trial() {
   best_qualities_.swap(qualities_);
 }
 
+/// Keeps the trial, and what is there now as the trial to return to.
+void VolumeRelocation::remember() {
+  keep_trial();
+  qualities_.clear();
+  for (Index c : star_)
+    qualities_.push_back(volume_.quality[static_cast<std::size_t>(c)]);
+  margins_.clear();
+  for (const TestedFacet &facet : facets_)
+    margins_.push_back(state_.margins.at(facet.at));
+}
+
+/// A random place near `from`, where nothing that the score knows is worse but shapes
+/// above the floor.
+bool VolumeRelocation::try_near(const Vertex<3> &from, double radius,
+                                const Score &before, CounterRandom &random,
+                                Index &background_cell) {
+  const Matrix<3> L = lower_factor<3>(from.M);
+  const double floor = std::min(before.quality_min, agreement_floor) - least_gain;
+  Score score;
+  return place(from.x + in_space(L, radius * random_in_ball(random)),
+               background_cell) &&
+         evaluate(floor, std::numeric_limits<double>::infinity(), score) &&
+         score.cost.failing <= before.cost.failing &&
+         score.lengths <= before.lengths + least_gain;
+}
+
 /// Moves v to the trial that was kept.
 void VolumeRelocation::commit(const Vertex<3> &vertex, Index background_cell) {
   const auto i = static_cast<std::size_t>(v_);

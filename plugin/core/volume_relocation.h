@@ -37,12 +37,37 @@ public:
   bool relocate(Index v, double radius, CounterRandom &random);
   /// A random place where no more than one more facet fails, to leave a local minimum.
   bool wander(Index v, double radius, CounterRandom &random);
+  /// Random places ever further off, up to this metric distance, where no more facets
+  /// fail and no length is worse. @returns whether the caller accepted one of them, who
+  /// is asked when v is there already.
+  template <class Accept>
+  bool relocate_where(Index v, double radius, CounterRandom &random, Accept accept) {
+    if (!gather(v))
+      return false;
+    const Score before = here();
+    const Vertex<3> from = trial_;
+    const Index from_cell = volume_.mesh.background_cell[static_cast<std::size_t>(v)];
+    for (int k = 0; k < n_places; ++k) {
+      Index at = from_cell;
+      if (!try_near(from, radius * (k + 1) / n_places, before, random, at))
+        continue;
+      remember();
+      commit(trial_, at);
+      if (accept())
+        return true;
+      keep_trial();
+      commit(from, from_cell);
+    }
+    return false;
+  }
   /// A step towards better shapes at which no more facets fail, and not by more.
   bool polish(Index v);
 
   [[nodiscard]] std::size_t trials() const { return trials_; }
 
 private:
+  static constexpr int n_places = 16;
+
   struct TestedFacet {
     HalfFacet at;
     FacetStar star; ///< with the trial vertex in the place of v
@@ -72,6 +97,9 @@ private:
   [[nodiscard]] bool evaluate(double floor, double limit, Score &score);
   [[nodiscard]] double length_penalty() const;
   void keep_trial();
+  void remember();
+  [[nodiscard]] bool try_near(const Vertex<3> &from, double radius, const Score &before,
+                              CounterRandom &random, Index &background_cell);
   void commit(const Vertex<3> &vertex, Index background_cell);
   [[nodiscard]] Vector<3> ideal_step(const Matrix<3> &L) const;
 };

@@ -1,4 +1,5 @@
 #include "parallel.h"
+#include "volume_insertion.h"
 #include "volume_passes.h"
 
 namespace anistar {
@@ -206,23 +207,10 @@ bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rul
   }
   if (!shell_of(volume_.mesh, cell, a, b, shell_))
     return false;
-  Index dimension = 3, lies_on = none;
-  const EdgeWalls walls = walls_at(volume_, shell_);
-  for (std::size_t k = 0; k < std::min(walls.n, walls.patch.size()); ++k)
-    if (volume_.surface.patch(walls.patch[k]).is_frozen)
-      return false;
-  const Index ridge = volume_.feature(a) <= 1 && volume_.feature(b) <= 1
-                          ? volume_.ridges.find(a, b)
-                          : none;
-  if (ridge != none && volume_.surface.curve(volume_.ridges.at(ridge).curve).is_frozen)
+  const EdgeFeature feature = feature_of(volume_, shell_);
+  if (feature.is_frozen)
     return false;
-  if (ridge != none) {
-    dimension = 1;
-    lies_on = volume_.ridges.at(ridge).curve;
-  } else if (walls.n > 0) {
-    dimension = 2;
-    lies_on = walls.patch[0];
-  }
+  const Index dimension = feature.dimension, lies_on = feature.lies_on;
   const Vertex<3> &p = volume_.mesh.vertex(a), &q = volume_.mesh.vertex(b);
   const Vector<3> e = q.x - p.x;
   const double la = std::sqrt(quadratic<3>(p.M, e)),
@@ -247,7 +235,7 @@ bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rul
     volume_.remove_vertex(v);
     return false;
   }
-  if (ridge != none)
+  if (feature.ridge != none)
     volume_.ridges.split(a, b, v);
   return true;
 }

@@ -53,6 +53,18 @@ def test_every_cell_is_certified_on_a_smooth_metric():
     assert validate(done.mesh, reference=first, tolerance=1e-12) == []
 
 
+def test_the_cells_that_agreement_leaves_are_mended():
+    mesh = cube(7)
+    done = remesh(mesh, linear(mesh), AGREE)
+    counts = done.report.counts
+    assert counts["star_failures"] > 0
+    assert counts["star_moves"] > 0
+    assert done.report.simplex_ok == done.report.star_ok == 1.0
+    assert anistar.certify(done.mesh, done.metric).simplex_ok.all()
+    assert done.report.statistics["q_min"] > 0.4
+    assert validate(done.mesh, reference=mesh, tolerance=1e-12) == []
+
+
 def test_quality_lengths_and_the_number_of_vertices_are_kept():
     mesh, M, first = adapted()
     plain = remesh(mesh, M, geometry=first).report

@@ -127,11 +127,11 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "max_vertices": (int, "stop at this number of vertices"),
     "max_seconds": (float, "stop after this time"),
     "frozen_tags": (_integers, "facet tags that are kept as they are, comma-separated"),
-    "agreement": (_agreement, "move vertices until the stars agree: auto, on or off"),
+    "agreement": (_agreement, "move vertices until the stars agree: auto (in 3D: not), on or off"),
     "until_consistent": (
         _until_consistent,
         "then insert points until every star is Delaunay in its own metric; "
-        "pure: only that, from the boundary alone",
+        "pure: only that, from the boundary alone, in 2D only",
     ),
     "seed": (int, "of the random moves"),
     "threads": (int, "that work side by side; the result does not depend on it"),

@@ -73,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _certified(report: RemeshReport) -> str:
     if report.star_ok is None or report.simplex_ok is None:
-        return "agreement off: the stars were not checked"
+        return f"agreement {report.agreement}: the stars were not checked"
     return (
         f"{100 * report.star_ok:.2f} % of the stars and {100 * report.simplex_ok:.2f} % of the "
         f"simplices are certified; agreement {report.agreement}"

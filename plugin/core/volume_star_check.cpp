@@ -1,0 +1,54 @@
+#include "volume_star_check.h"
+
+#include "star_failures.h"
+#include "volume_relocation.h"
+
+namespace anistar {
+namespace {
+
+constexpr double radius = .3;
+
+class VolumeMender {
+public:
+  VolumeMender(Volume &volume, double hausdorff_number, std::uint64_t seed)
+      : volume_(volume), seed_(seed), state_(volume, hausdorff_number),
+        relocation_(state_), failures_(volume.mesh) {}
+
+  /// As in 2D; vertices on surfaces and ridges slide along them.
+  bool mend(Index cell, int round) {
+    for (Index v : failures_.culprits(cell)) {
+      std::vector<Index> cells;
+      star_of(volume_, v, cells);
+      failures_.surround(cells);
+      const int failing = failures_.count(cells);
+      CounterRandom random(seed_ ^ 0x5741u, static_cast<std::uint64_t>(v),
+                           static_cast<std::uint64_t>(round));
+      if (relocation_.relocate_where(v, radius, random, [&] {
+            return failures_.count(cells, failing) < failing;
+          }))
+        return true;
+    }
+    return false;
+  }
+  [[nodiscard]] std::vector<Index> take_changed() {
+    return std::exchange(state_.changed, {});
+  }
+  [[nodiscard]] StarFailures<3> &failures() { return failures_; }
+
+private:
+  Volume &volume_;
+  std::uint64_t seed_;
+  AgreementState state_;
+  VolumeRelocation relocation_;
+  StarFailures<3> failures_;
+};
+
+} // namespace
+
+std::size_t mend_stars(Volume &volume, Monitor &monitor, double hausdorff_number,
+                       std::uint64_t seed, DelaunayBits &known) {
+  VolumeMender mender(volume, hausdorff_number, seed);
+  return mend_failures(volume.mesh, mender, monitor, known);
+}
+
+} // namespace anistar
