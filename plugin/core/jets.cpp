@@ -13,8 +13,8 @@ constexpr std::size_t enough_points = 16;
 /// Points needed for a fit of degree two and three.
 constexpr std::size_t for_quadratic = 5, for_cubic = 10;
 /// Where few points leave the fit undetermined, squares of the distance from a line in
-/// the plane, exact on cylinders, are preferred to a square of the height, with which it
-/// is exact on spheres, and this one to cubic terms, by these factors.
+/// the plane, exact on cylinders, are preferred to a square of the height, with which
+/// it is exact on spheres, and this one to cubic terms, by these factors.
 constexpr double height_reluctance = .1, cubic_reluctance = .01;
 /// Fits over a tangent plane, each over that of the one before.
 constexpr int max_fits = 4;

@@ -1,6 +1,5 @@
 """Meshes follow a solution in time; they are kept while they fit."""
 
-
 import numpy as np
 import pytest
 from meshes import cube, square
