@@ -182,12 +182,21 @@ def _cross(points: Float, first: Int, second: Int) -> Bool:
 
 
 def _separates(facet: Float, p: Float, q: Float) -> Bool:
-    """Tell whether the line or plane of the facet lies strictly between `p` and `q`."""
+    """Tell whether the line or plane of the facet lies strictly between `p` and `q`.
+
+    Rounding the coordinates of a facet by eps turns its plane by eps over its height: far from a
+    needle, a point of the same plane is off it by more than the contact distance.
+    """
     width = facet.shape[1]
     index = np.arange(len(facet) * width, dtype=np.int32).reshape(-1, width)
     normal = facet_normals(facet.reshape(-1, facet.shape[2]), index)
     below = np.einsum("ij,ij->i", normal, p - facet[:, 0])
     above = np.einsum("ij,ij->i", normal, q - facet[:, 0])
     reach = np.linalg.norm(normal, axis=1) * np.linalg.norm(q - p, axis=1)
-    strict = np.minimum(np.abs(below), np.abs(above)) > CONTACT * reach
+    legs = facet[:, 1:] - facet[:, :1]
+    longest = np.linalg.norm(legs, axis=2).max(axis=1)
+    far = np.maximum(np.linalg.norm(p - facet[:, 0], axis=1), np.linalg.norm(q - p, axis=1))
+    rounding = 8 * np.finfo(float).eps * np.abs(facet).max(axis=(1, 2))
+    turn = rounding * longest ** (width - 2) * (far + longest)
+    strict = np.minimum(np.abs(below), np.abs(above)) > CONTACT * reach + turn
     return np.asarray(strict & (below * above < 0))

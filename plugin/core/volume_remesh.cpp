@@ -22,8 +22,10 @@ constexpr int max_growth_rounds = 60, max_converged_rounds = 6;
 /// fractions of the vertices.
 constexpr double step_is_dry = .02, growth_is_dry = .03;
 /// Growth ends as well when a round changes the number of vertices by less than this:
-/// where the metric is steep some edges are split and collapsed for ever.
+/// where the metric is steep some edges are split and collapsed for ever. A step above
+/// the last ends after as many such rounds, for the next one to go on elsewhere.
 constexpr double steady = .01;
+constexpr int max_steady_rounds = 2;
 /// The mesh is sorted again when it has grown by this.
 constexpr double growth_between_sorts = 1.6;
 /// Or, at the final size, when this fraction of its vertices came or went.
@@ -45,7 +47,7 @@ void grow(Volume &volume, VolumePasses &passes, int threads) {
       break;
   double threshold = std::max(longest_edge, passes.longest_edge() / growth_step);
   std::size_t sorted_at = volume.n_vertices();
-  int converged = 0;
+  int converged = 0, n_steady = 0;
   bool is_lowered = false;
   for (int round = 0; round < max_growth_rounds && !passes.is_stopped(); ++round) {
     const bool is_last_step = threshold <= longest_edge;
@@ -64,12 +66,17 @@ void grow(Volume &volume, VolumePasses &passes, int threads) {
     const double fraction =
         static_cast<double>(splits) / static_cast<double>(volume.n_vertices());
     const double change = static_cast<double>(volume.n_vertices()) / before - 1;
-    if (is_last_step && (fraction < growth_is_dry || std::abs(change) < steady ||
-                         ++converged >= max_converged_rounds))
+    const bool is_steady = std::abs(change) < steady;
+    if (is_last_step &&
+        (fraction < growth_is_dry || is_steady || ++converged >= max_converged_rounds))
       break;
-    is_lowered = !is_last_step && fraction < step_is_dry;
-    if (is_lowered)
+    n_steady = is_steady ? n_steady + 1 : 0;
+    is_lowered =
+        !is_last_step && (fraction < step_is_dry || n_steady >= max_steady_rounds);
+    if (is_lowered) {
       threshold = std::max(longest_edge, threshold / growth_step);
+      n_steady = 0;
+    }
   }
   const std::size_t changes = passes.counts().splits + passes.counts().collapses;
   if (static_cast<double>(changes) >
