@@ -93,11 +93,8 @@ bool FacetRepair::remove_edge(Index c, Index a, Index b, Demand demand) {
   const std::size_t n = shell_.n_ring();
   if (n < 3 || n > longest_ring)
     return false;
-  if (volume_.feature(a) <= 1 && volume_.feature(b) <= 1 &&
-      volume_.ridges.find(a, b) != none)
-    return false;
   const EdgeWalls walls = walls_at(volume_, shell_);
-  if (walls.n != 0 && (walls.n != 2 || walls.patch[0] != walls.patch[1]))
+  if (!may_vanish(volume_, shell_, walls))
     return false;
   for (std::size_t k = 0; k < n; ++k) {
     if (walls.n == 2 && k != walls.position[0] && k != walls.position[1])

@@ -159,6 +159,13 @@ bool shell_of(const Triangulation<3> &mesh, Index start, Index a, Index b,
   return true;
 }
 
+bool may_vanish(const Volume &volume, const Shell &shell, const EdgeWalls &walls) {
+  const bool is_ridge = volume.feature(shell.a) <= 1 && volume.feature(shell.b) <= 1 &&
+                        volume.ridges.find(shell.a, shell.b) != none;
+  return !is_ridge &&
+         (walls.n == 0 || (walls.n == 2 && walls.patch[0] == walls.patch[1]));
+}
+
 EdgeWalls walls_at(const Volume &volume, const Shell &shell) {
   EdgeWalls walls;
   const Triangulation<3> &mesh = volume.mesh;

@@ -158,6 +158,9 @@ struct EdgeWalls {
   std::array<Index, 4> patch{};
 };
 [[nodiscard]] EdgeWalls walls_at(const Volume &volume, const Shell &shell);
+/// Whether an edge is no ridge and has no walls or two of one patch: it may vanish.
+[[nodiscard]] bool may_vanish(const Volume &volume, const Shell &shell,
+                              const EdgeWalls &walls);
 
 /// Renumbers along a Hilbert curve, and cuts into slabs.
 void renumber(Volume &volume, int threads = 1);

@@ -157,12 +157,10 @@ bool VolumePasses::polish_edge(Index c, Index a, Index b) {
   if (!shell_of(mesh, c, a, b, shell_))
     return false;
   const std::size_t n = shell_.n_ring();
-  if (n < 3 || n > longest_ring ||
-      (volume_.feature(a) <= 1 && volume_.feature(b) <= 1 &&
-       volume_.ridges.find(a, b) != none))
+  if (n < 3 || n > longest_ring)
     return false;
   const EdgeWalls walls = walls_at(volume_, shell_);
-  if (walls.n != 0 && (walls.n != 2 || walls.patch[0] != walls.patch[1]))
+  if (!may_vanish(volume_, shell_, walls))
     return false;
   double worst = 1;
   for (Index cell : shell_.all())

@@ -82,10 +82,7 @@ bool VolumePasses::remove_edge(Index c, Index a, Index b) {
   if (n < 3 || n > longest_ring)
     return false;
   const EdgeWalls walls = walls_at(volume_, shell_);
-  if (volume_.feature(a) <= 1 && volume_.feature(b) <= 1 &&
-      volume_.ridges.find(a, b) != none)
-    return false;
-  if (walls.n != 0 && (walls.n != 2 || walls.patch[0] != walls.patch[1]))
+  if (!may_vanish(volume_, shell_, walls))
     return false;
   if (volume_.slab)
     for (std::size_t k = 0; k < n; ++k)
