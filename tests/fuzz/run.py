@@ -90,7 +90,7 @@ def case_functions(dim):
         from volume_cases import make_volume_case, run_volume_case
 
         return make_volume_case, run_volume_case
-    from cases import make_case, run_case
+    from fuzz_cases import make_case, run_case
 
     return make_case, run_case
 

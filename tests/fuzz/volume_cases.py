@@ -1,7 +1,7 @@
 """One random 3D case: what goes into `remesh`, and the judgement of what comes out."""
 
 import numpy as np
-from cases import Case, Outcome, judged_error
+from fuzz_cases import Case, Outcome, judged_error
 from volume_domains import FLAT, volume_domain
 from volume_metrics import volume_metric
 

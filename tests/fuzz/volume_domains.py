@@ -7,7 +7,7 @@ pinched edges and touching corners, and unions of cells of random Delaunay trian
 from itertools import pairwise
 
 import numpy as np
-from domains import Domain
+from fuzz_domains import Domain
 from meshes import compacted
 from scipy.spatial import Delaunay
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from domains import domain
+from fuzz_domains import domain
 from meshes import compacted, grid
 from metric_fields import metric_field
 
