@@ -12,10 +12,9 @@ constexpr int max_rings = 4;
 constexpr std::size_t enough_points = 16;
 /// Points needed for a fit of degree two and three.
 constexpr std::size_t for_quadratic = 5, for_cubic = 10;
-/// Where few points leave the fit undetermined, squares of the distance from a line in
-/// the plane, exact on cylinders, are preferred to a square of the height, with which
-/// it is exact on spheres, and this one to cubic terms, by these factors.
-constexpr double height_reluctance = .1, cubic_reluctance = .01;
+/// Where few points leave the fit undetermined, a square of the height, with which it
+/// is exact on spheres and cylinders, is this much preferred to cubic terms.
+constexpr double cubic_reluctance = .01;
 /// Fits over a tangent plane, each over that of the one before.
 constexpr int max_fits = 4;
 
@@ -159,17 +158,15 @@ private:
       const Vector<3> y = (at(ring_[k + 1]) - at(jet)) / reach;
       const double u = y.dot(t), v = y.dot(b), w = y.dot(normal), weight = 1 / y.norm();
       const auto row = static_cast<Eigen::Index>(k);
-      A.row(row).head(5) << u, v, u * u + w * w, u * v, v * v + w * w;
+      A.row(row).head(5) << u, v, u * u, u * v, v * v;
       if (is_cubic)
         A.row(row).tail(5) << w * w, u * u * u, u * u * v, u * v * v, v * v * v;
       A.row(row) *= weight;
       z[row] = w * weight;
     }
     Eigen::VectorXd scale = A.colwise().norm().cwiseMax(1e-12).cwiseInverse();
-    if (is_cubic) {
-      scale[5] *= height_reluctance;
+    if (is_cubic)
       scale.tail(4) *= cubic_reluctance;
-    }
     A = A * scale.asDiagonal();
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
     solver.setThreshold(rank_tolerance);
