@@ -22,9 +22,10 @@ constexpr int max_growth_rounds = 60, max_converged_rounds = 6;
 /// fractions of the vertices.
 constexpr double step_is_dry = .02, growth_is_dry = .03;
 /// Growth ends as well when a round changes the number of vertices by less than this:
-/// where the metric is steep some edges are split and collapsed for ever. A step above
-/// the last ends after as many such rounds, for the next one to go on elsewhere.
-constexpr double steady = .01;
+/// where the metric is steep some edges are split and collapsed for ever. Or when the
+/// repairs take away this fraction of what was split. A step above the last ends after
+/// as many such rounds, for the next one to go on elsewhere.
+constexpr double steady = .01, undone = .5;
 constexpr int max_steady_rounds = 2;
 /// The mesh is sorted again when it has grown by this.
 constexpr double growth_between_sorts = 1.6;
@@ -62,11 +63,13 @@ void grow(Volume &volume, VolumePasses &passes, int threads) {
       renumber(volume, threads);
       sorted_at = volume.n_vertices();
     }
+    const auto unrepaired = static_cast<double>(volume.n_vertices());
     passes.repair(.1);
-    const double fraction =
-        static_cast<double>(splits) / static_cast<double>(volume.n_vertices());
-    const double change = static_cast<double>(volume.n_vertices()) / before - 1;
-    const bool is_steady = std::abs(change) < steady;
+    const auto after = static_cast<double>(volume.n_vertices());
+    const double fraction = static_cast<double>(splits) / after;
+    const bool is_steady =
+        std::abs(after / before - 1) < steady ||
+        (splits > 0 && unrepaired - after > undone * static_cast<double>(splits));
     if (is_last_step &&
         (fraction < growth_is_dry || is_steady || ++converged >= max_converged_rounds))
       break;
