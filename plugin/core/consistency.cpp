@@ -1,6 +1,7 @@
 #include "consistency.h"
 
 #include "bounded_distortion.h"
+#include "mesh_walk.h"
 #include "relocation.h"
 
 #include <cmath>

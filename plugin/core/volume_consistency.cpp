@@ -2,6 +2,7 @@
 
 #include "bounded_distortion.h"
 #include "ellipse_sampler.h"
+#include "mesh_walk.h"
 #include "vertex_mover.h"
 #include "volume_agreement.h"
 #include "volume_star_check.h"
@@ -202,7 +203,7 @@ private:
       Vector<3> x = ball.centre;
       if (k > 0)
         x += ellipse.step(parameters_.delta * ball.radius, random);
-      const VolumeWalk at = walk_to(mesh_, item.cell, x);
+      const Walk at = walk_to(mesh_, item.cell, x);
       if (at.wall.exists())
         wall = at.wall;
       if (at.cell == none)
