@@ -1,6 +1,7 @@
 #include "consistency.h"
 
-#include "bounded_distortion.h"
+#include "bad_cells.h"
+#include "ellipse_sampler.h"
 #include "mesh_walk.h"
 #include "relocation.h"
 
@@ -28,19 +29,8 @@ constexpr int not_insertable = std::numeric_limits<int>::max();
 class Rounds {
 public:
   Rounds(Workspace &w, const ConsistencyParameters &parameters, std::uint64_t seed,
-         bool everywhere, ConsistencyCounts &counts)
-      : w_(w), mesh_(w.mesh), parameters_(parameters), seed_(seed),
-        everywhere_(everywhere), counts_(counts) {}
-
-  [[nodiscard]] std::vector<BadCell<2>>
-  bad_cells(const std::vector<std::uint8_t> &bits) const {
-    return anistar::bad_cells(
-        mesh_, bits, parameters_, everywhere_, [&](const Circumcircle &ball, Index v) {
-          return distortion_size(w_.background, ball,
-                                 mesh_.background_cell[static_cast<std::size_t>(v)],
-                                 parameters_.gamma_0);
-        });
-  }
+         ConsistencyCounts &counts)
+      : w_(w), mesh_(w.mesh), parameters_(parameters), seed_(seed), counts_(counts) {}
 
   /// One point for each bad cell that shares no vertex with one treated before, of the
   /// first rule that can place any. @returns that rule, `kept` when no rule can.
@@ -68,7 +58,6 @@ private:
   Triangulation<2> &mesh_;
   const ConsistencyParameters &parameters_;
   std::uint64_t seed_;
-  bool everywhere_; ///< rules 1 to 3 also for cells that are consistent
   ConsistencyCounts &counts_;
   std::vector<std::pair<Index, HalfFacet>> ring_;
 
@@ -206,7 +195,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                                           std::uint64_t seed, int threads,
                                           bool relocate, StarCheck &check) {
   ConsistencyCounts counts;
-  Rounds rounds(w, parameters, seed, !relocate, counts);
+  Rounds rounds(w, parameters, seed, counts);
   double most = 0;
   MeshOnCurves best;
   StarCheck best_check;
@@ -220,7 +209,9 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
   start();
   bool is_sizing = !relocate; // the pure mode starts from the boundary alone
   for (counts.rounds = 0;; ++counts.rounds) {
-    const std::vector<BadCell<2>> bad = rounds.bad_cells(check.bits);
+    // without moves rules 1 to 3 are also for cells that are consistent
+    const std::vector<BadCell<2>> bad =
+        bad_cells<2>(w.mesh, w.background, check.bits, parameters, !relocate);
     if (failing_fraction(check.bits) < failing_fraction(best_check.bits)) {
       best = w.on_curves;
       best_check = check;

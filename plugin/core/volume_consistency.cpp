@@ -1,6 +1,6 @@
 #include "volume_consistency.h"
 
-#include "bounded_distortion.h"
+#include "bad_cells.h"
 #include "ellipse_sampler.h"
 #include "mesh_walk.h"
 #include "vertex_mover.h"
@@ -81,16 +81,6 @@ public:
       : volume_(volume), mesh_(volume.mesh), monitor_(monitor), parameters_(parameters),
         seed_(seed), operator_(volume), insertion_(volume),
         mover_(volume, insertion_, operator_, parameters.sigma_0), counts_(counts) {}
-
-  [[nodiscard]] std::vector<BadCell<3>>
-  bad_cells(const std::vector<std::uint8_t> &bits) const {
-    return anistar::bad_cells(
-        mesh_, bits, parameters_, false, [&](const Circumsphere<3> &ball, Index v) {
-          return distortion_size(volume_.background, ball,
-                                 mesh_.background_cell[static_cast<std::size_t>(v)],
-                                 parameters_.gamma_0);
-        });
-  }
 
   /// One change for each bad cell that shares no vertex with one treated before.
   void treat(const std::vector<BadCell<3>> &bad, int round, const Effort &effort) {
@@ -342,7 +332,8 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
   progress.reference = progress.failing;
   std::optional<Snapshot> best(std::in_place, volume, known, progress.failing);
   for (counts.rounds = 0;; ++counts.rounds) {
-    const std::vector<BadCell<3>> bad = rounds.bad_cells(known.bits);
+    const std::vector<BadCell<3>> bad =
+        bad_cells<3>(volume.mesh, volume.background, known.bits, parameters, false);
     if (bad.empty())
       counts.stop = "consistent";
     else if (counts.rounds == max_rounds)
