@@ -153,8 +153,7 @@ def supermesh(
     )
     starts, columns, volumes = made["pairs"]
     shape = (target.n_cells, source.n_cells)
-    width = source.dim + 1
-    block_shape = (shape[0] * width, shape[1] * width)
+    block_shape = tuple((source.dim + 1) * size for size in shape)
     return Supermesh(
         source=source,
         target=target,
