@@ -152,8 +152,8 @@ def supermesh(
         callback=callback,
     )
     starts, columns, volumes = made["pairs"]
-    shape = (target.n_cells, source.n_cells)
-    block_shape = tuple((source.dim + 1) * size for size in shape)
+    shape, width = (target.n_cells, source.n_cells), source.dim + 1
+    block_shape = (shape[0] * width, shape[1] * width)
     return Supermesh(
         source=source,
         target=target,
