@@ -4,6 +4,7 @@
 #include "ellipse_sampler.h"
 #include "mesh_walk.h"
 #include "relocation.h"
+#include "round_bounds.h"
 
 #include <cmath>
 #include <utility>
@@ -187,6 +188,14 @@ private:
   return 1 - static_cast<double>(passing) / static_cast<double>(bits.size());
 }
 
+/// Whether vertices are moved after a round. While failures are everywhere, that helps
+/// little for what it costs.
+[[nodiscard]] bool is_moved_after(int round, double failing) {
+  return failing < few_failing ||
+         (failing < many_failing &&
+          round % rounds_between_moves == rounds_between_moves - 1);
+}
+
 } // namespace
 
 ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
@@ -196,7 +205,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                                           bool relocate, StarCheck &check) {
   ConsistencyCounts counts;
   Rounds rounds(w, parameters, seed, counts);
-  double most = 0;
+  RoundBounds bounds{max_rounds, patience, 0};
   MeshOnCurves best;
   StarCheck best_check;
   int since_best = 0;
@@ -204,7 +213,8 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
     best = w.on_curves;
     best_check = check;
     since_best = 0;
-    most = (1 + parameters.max_growth) * static_cast<double>(w.mesh.vertices.size());
+    bounds.most_vertices =
+        (1 + parameters.max_growth) * static_cast<double>(w.mesh.vertices.size());
   };
   start();
   bool is_sizing = !relocate; // the pure mode starts from the boundary alone
@@ -217,34 +227,20 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
       best_check = check;
       since_best = 0;
     }
-    if (bad.empty())
-      counts.stop = "consistent";
-    else if (counts.rounds == max_rounds)
-      counts.stop = "max_rounds";
-    else if (static_cast<double>(w.mesh.vertices.size()) > most)
-      counts.stop = "max_growth";
-    else if (since_best > patience)
-      counts.stop = "stalled";
-    else if (!monitor.keep_going(w.mesh.vertices.size(), 0) ||
-             !monitor.look(double(counts.rounds) / max_rounds))
-      counts.stop = name_of(monitor.reason());
+    counts.stop = bounds.stop(bad.empty(), counts.rounds, since_best,
+                              w.mesh.vertices.size(), monitor);
     if (!counts.stop.empty())
       break;
     // in the pure mode rules 1 to 3 end by packing, and only rule 4 can stall
     const Rule rule = rounds.treat(bad, counts.rounds);
     since_best += relocate || rule == Rule::inconsistency || rule == Rule::kept;
-    // while failures are everywhere, moving vertices helps little for what it costs
-    const double failing = failing_fraction(check.bits);
     const bool moving =
-        relocate && (failing < few_failing ||
-                     (failing < many_failing && counts.rounds % rounds_between_moves ==
-                                                    rounds_between_moves - 1));
+        relocate && is_moved_after(counts.rounds, failing_fraction(check.bits));
+    const std::uint64_t round_seed = seed + 1 + std::uint64_t(counts.rounds);
     if (moving)
-      (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds),
-                  threads);
+      (void)agree(w, legaliser, monitor, round_seed, threads);
     renumber(w, threads);
-    check = check_stars(w, monitor, seed + 1 + std::uint64_t(counts.rounds), threads,
-                        moving);
+    check = check_stars(w, monitor, round_seed, threads, moving);
     is_sizing = is_sizing && rule == Rule::size;
     if (is_sizing)
       start(); // a mesh too coarse to be judged is no best one, and may grow

@@ -3,6 +3,7 @@
 #include "bad_cells.h"
 #include "ellipse_sampler.h"
 #include "mesh_walk.h"
+#include "round_bounds.h"
 #include "vertex_mover.h"
 #include "volume_agreement.h"
 #include "volume_star_check.h"
@@ -326,25 +327,17 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
                                           int threads, DelaunayBits &known) {
   ConsistencyCounts counts;
   Rounds rounds(volume, monitor, parameters, seed, counts);
-  const double most =
-      (1 + parameters.max_growth) * static_cast<double>(volume.n_vertices());
+  const RoundBounds bounds{max_rounds, patience,
+                           (1 + parameters.max_growth) *
+                               static_cast<double>(volume.n_vertices())};
   Progress progress{failing_fraction(volume.mesh, known.bits)};
   progress.reference = progress.failing;
   std::optional<Snapshot> best(std::in_place, volume, known, progress.failing);
   for (counts.rounds = 0;; ++counts.rounds) {
     const std::vector<BadCell<3>> bad =
         bad_cells<3>(volume.mesh, volume.background, known.bits, parameters, false);
-    if (bad.empty())
-      counts.stop = "consistent";
-    else if (counts.rounds == max_rounds)
-      counts.stop = "max_rounds";
-    else if (static_cast<double>(volume.n_vertices()) > most)
-      counts.stop = "max_growth";
-    else if (progress.since_best > patience)
-      counts.stop = "stalled";
-    else if (!monitor.keep_going(volume.n_vertices(), 0) ||
-             !monitor.look(double(counts.rounds) / max_rounds))
-      counts.stop = name_of(monitor.reason());
+    counts.stop = bounds.stop(bad.empty(), counts.rounds, progress.since_best,
+                              volume.n_vertices(), monitor);
     if (!counts.stop.empty())
       break;
     const std::uint32_t since = ++volume.clock;
