@@ -112,7 +112,7 @@ std::string quotient(double value, double bound) {
 
 /// Why there will be no agreement; empty when there will be.
 std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
-                           const VolumeSettings &settings) {
+                           const RemeshSettings &settings) {
   if (settings.agreement == AgreementMode::off)
     return "off";
   if (monitor.reason() != StopReason::finished)
@@ -133,7 +133,7 @@ std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
 }
 
 /// Phase 4, as far as the metric and the settings let it. @pre the mesh was renumbered.
-void agree(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
+void agree(Volume &volume, Monitor &monitor, const RemeshSettings &settings,
            VolumeResult &out) {
   out.agreement = reason_to_skip(volume, monitor, settings);
   if (!out.agreement.empty())
@@ -182,7 +182,7 @@ void extract_facets(const Volume &volume, VolumeResult &out) {
 
 /// Phases 5 and 6 where agreement or consistency was asked for, unless a budget has
 /// been spent: the certificate takes longer than a pass. @pre the mesh was renumbered.
-void certify_stars(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
+void certify_stars(Volume &volume, Monitor &monitor, const RemeshSettings &settings,
                    Stopwatch &watch, VolumeResult &out) {
   const bool inserting = settings.consistency != ConsistencyMode::off;
   if (monitor.reason() != StopReason::finished ||
@@ -213,7 +213,7 @@ void certify_stars(Volume &volume, Monitor &monitor, const VolumeSettings &setti
 VolumeResult remesh_volume(const VolumeInput &input,
                            std::span<const SymmetricTensor<3>> metric,
                            const SurfaceInput &geometry, SurfaceProjection projection,
-                           const VolumeSettings &settings, Monitor::Progress progress) {
+                           const RemeshSettings &settings, Monitor::Progress progress) {
   VolumeResult out;
   Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
   Stopwatch watch(monitor, out.seconds);
