@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 import pytest
-from remesh3d.domains import changed, jittered_cube, layer, turning, uniform
 from meshes import cube
+from remesh3d.domains import changed, jittered_cube, layer, turning, uniform
 
 from anistar import RemeshOptions, remesh, validate
 from anistar.bad_cells import worst_cells
