@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import cube
+from meshes import cube, square
 from remesh3d.domains import changed, rotated, uniform
 
 from anistar import Mesh, MeshingError, RemeshOptions, certify, remesh, validate
@@ -144,6 +144,17 @@ def test_a_tensor_that_is_no_metric_is_named(call, tensor, message):
 def test_a_metric_of_the_wrong_shape_is_refused(M, message):
     with pytest.raises(MetricError, match=message):
         remesh(tetrahedron(), M)
+
+
+def test_a_geometry_of_another_dimension_is_refused():
+    mesh = cube(2)
+    with pytest.raises(ValueError, match="the geometry has dimension 2, the mesh 3"):
+        remesh(mesh, uniform(mesh, 0.3), geometry=square(2))
+
+
+def test_a_frozen_tag_that_no_facet_has_is_named():
+    with pytest.raises(ValueError, match="frozen_tags: no facet of the geometry has tag 9"):
+        remesh(cube(1), uniform(cube(1), 0.5), RemeshOptions(frozen_tags=[1, 9]))
 
 
 @pytest.mark.parametrize(("size", "told"), [(1e-100, "1.0e-100"), (1e150, r"1.0e\+150")])
