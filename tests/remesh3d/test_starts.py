@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from meshes import cube
 from remesh3d.domains import changed, jittered_cube, layer, turning, uniform
+from scipy.spatial import Delaunay
 
-from anistar import RemeshOptions, remesh, validate
+from anistar import Mesh, RemeshOptions, remesh, validate
 from anistar.bad_cells import worst_cells
 from anistar.quality import mean_ratios
 
@@ -60,11 +61,27 @@ def flattened_cube(n=4, by=1e-4):
     return changed(mesh, points=points)
 
 
+def of_another_mesher(n=4, seed=0):
+    """The Delaunay tetrahedra that qhull makes of scattered points of the cube."""
+    base = cube(n)
+    points = base.points.copy()
+    is_free = (points > 0) & (points < 1)
+    points += is_free * np.random.default_rng(seed).uniform(-0.3 / n, 0.3 / n, points.shape)
+    cells = Delaunay(points).simplices
+    volumes = np.linalg.det(points[cells[:, 1:]] - points[cells[:, :1]])
+    cells = np.where((volumes < 0)[:, None], cells[:, [0, 1, 3, 2]], cells)
+    bare = Mesh(points=points, cells=cells[abs(volumes) > 1e-13])  # none flat in a face
+    on = points[bare.facets]
+    sides = [(on[:, :, k] == value).all(axis=1) for k in range(3) for value in (0.0, 1.0)]
+    return changed(bare, facet_tags=1 + np.argmax(sides, axis=0), names=base.names)
+
+
 STARTS = {
     "coarse": lambda: cube(2),
     "fine": lambda: cube(8),
     "jittered": jittered_cube,
     "slivers": flattened_cube,
+    "another mesher": of_another_mesher,
     "another metric": lambda: adapted(cube(4), flat_cells, 2).mesh,
 }
 

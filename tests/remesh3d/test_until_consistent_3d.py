@@ -41,6 +41,8 @@ def test_a_smooth_metric_ends_consistent_with_few_more_vertices():
     assert done.report.converged
     assert done.report.star_ok == done.report.simplex_ok == 1.0
     assert done.report.counts["consistency_moves"] > 0
+    assert after.sliverity.min() > ConsistencyOptions().sigma_0
+    assert ConsistencyOptions().candidates >= 12
     assert done.mesh.n_points <= 1.05 * plain.mesh.n_points
     assert done.report.statistics["q_min"] > 0.2
     assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
@@ -161,3 +163,16 @@ def test_the_pure_mode_is_refused():
     mesh = cube(2)
     with pytest.raises(ValueError, match='until_consistent="pure" exists in 2D only'):
         remesh(mesh, uniform(mesh, 0.5), RemeshOptions(until_consistent="pure"))
+
+
+def test_a_stricter_rule_against_slivers_is_kept():
+    mesh = cube(3)
+    thinnest = []
+    for sigma_0 in (0.05, 0.45):
+        rules = ConsistencyOptions(sigma_0=sigma_0)
+        options = dataclasses.replace(INSERTING, consistency=rules)
+        done = remesh(mesh, growing(mesh, 0.3, 0.4), options)
+        assert done.report.consistency["stop_reason"] == "consistent"
+        assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+        thinnest.append(certify(done.mesh, done.metric).sliverity.min())
+    assert thinnest[0] < 0.45 < thinnest[1]
