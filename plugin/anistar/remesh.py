@@ -63,7 +63,8 @@ def remesh(
         first mesh, so that curved boundaries do not drift. In 3D the facets, ridges and corners
         are those of `mesh`, and the geometry gives the shape of the curved ones.
     project : callable, optional
-        ``project(points, facet_tag)`` moves new points on curves onto the true geometry.
+        ``project(points, facet_tag)`` moves new points of curves, in 3D of curved surfaces, onto
+        the true geometry. In 3D ridges keep to the curve through the points of the geometry.
 
     Returns
     -------

@@ -14,6 +14,7 @@ from .overlap import crossing_facets, touching_point
 from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport
+from .volume_demand import check_count, check_sizes
 
 
 def check_surfaces(mesh: Mesh, report: RemeshReport) -> None:
@@ -59,9 +60,16 @@ def remesh_volume(
     ------
     ValueError
         If an option asks for what exists in 2D only.
+    MetricError
+        If the metric asks for lengths out of the range of double precision.
+    MeshingError
+        If it asks for more cells than can be numbered and nothing bounds the run.
     """
     if options.until_consistent == "pure":
         raise ValueError('until_consistent="pure" exists in 2D only: use until_consistent=True')
+    check_sizes(mesh, metric)
+    if options.max_vertices is None and options.max_seconds is None:
+        check_count(mesh, metric)
     raw: dict[str, Any] = _core.remesh3(
         mesh.points * scale,
         mesh.cells,

@@ -135,6 +135,7 @@ std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
 /// Phase 4, as far as the metric and the settings let it. @pre the mesh was renumbered.
 void agree(Volume &volume, Monitor &monitor, const RemeshSettings &settings,
            VolumeResult &out) {
+  (void)monitor.look(0); // small meshes come here without a look at the clock
   out.agreement = reason_to_skip(volume, monitor, settings);
   if (!out.agreement.empty())
     return;
@@ -189,7 +190,11 @@ void certify_stars(Volume &volume, Monitor &monitor, const RemeshSettings &setti
       (settings.agreement != AgreementMode::on && !inserting))
     return;
   watch.phase("certificate");
-  DelaunayBits known = delaunay_bits<3>(certified(volume.mesh), settings.threads);
+  DelaunayBits known =
+      delaunay_bits<3>(certified(volume.mesh), settings.threads,
+                       [&](double fraction) { return monitor.look(fraction); });
+  if (monitor.reason() != StopReason::finished)
+    return;
   out.counts["star_failures"] =
       static_cast<double>(failing_cells(volume.mesh, known.bits).size());
   out.counts["star_moves"] = static_cast<double>(
