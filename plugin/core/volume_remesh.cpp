@@ -28,8 +28,10 @@ constexpr double steady = .01;
 constexpr int max_steady_rounds = 2;
 /// The mesh is sorted again when it has grown by this.
 constexpr double growth_between_sorts = 1.6;
-/// Or, at the final size, when this fraction of its vertices came or went.
+/// Or when this fraction of its vertices came or went; but while it grows not one of so
+/// few cells, which the cache holds in any order.
 constexpr double change_between_sorts = .1;
+constexpr std::size_t cached_cells = 1 << 15;
 /// Sweeps over the whole mesh at its final size.
 constexpr int n_sweeps = 3;
 /// Where the metric is steep, all is polished, several times; else what is below this.
@@ -40,13 +42,53 @@ constexpr double polished_below = .5;
 /// stays below .3 on 90 % of the edges, and at least 97 % up to the first bound here;
 /// the second one is for 99 % of the edges.
 constexpr double largest_agreeing_p90 = .35, largest_agreeing_p99 = .6;
+
+/// Keeps a mesh sorted along its curve while vertices come and go: what is near in
+/// space must be near in memory, or most of the time goes into waiting for it.
+class CurveOrder {
+public:
+  CurveOrder(Volume &volume, const VolumePasses &passes, int threads)
+      : volume_(volume), passes_(passes), threads_(threads),
+        n_vertices_(volume.n_vertices()) {}
+
+  void restore() {
+    const bool has_grown = static_cast<double>(volume_.mesh.vertices.size()) >
+                           growth_between_sorts * static_cast<double>(n_vertices_);
+    const bool is_scattered =
+        volume_.mesh.cells.size() > cached_cells && has_changed(n_changes_);
+    if (!has_grown && !is_scattered)
+      return;
+    renumber(volume_, threads_);
+    n_vertices_ = volume_.n_vertices();
+    n_changes_ = n_changes();
+  }
+  void finish() {
+    if (has_changed(0))
+      renumber(volume_, threads_);
+  }
+
+private:
+  Volume &volume_;
+  const VolumePasses &passes_;
+  int threads_;
+  std::size_t n_vertices_, n_changes_ = 0; ///< at the last sort
+
+  [[nodiscard]] std::size_t n_changes() const {
+    return passes_.counts().splits + passes_.counts().collapses;
+  }
+  [[nodiscard]] bool has_changed(std::size_t since) const {
+    return static_cast<double>(n_changes() - since) >
+           change_between_sorts * static_cast<double>(volume_.n_vertices());
+  }
+};
+
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
 void grow(Volume &volume, VolumePasses &passes, int threads) {
   for (int round = 0; round < max_surface_rounds; ++round)
     if (passes.follow_surfaces() == 0)
       break;
   double threshold = std::max(longest_edge, passes.longest_edge() / growth_step);
-  std::size_t sorted_at = volume.n_vertices();
+  CurveOrder order(volume, passes, threads);
   int converged = 0, n_steady = 0;
   bool is_lowered = false;
   for (int round = 0; round < max_growth_rounds && !passes.is_stopped(); ++round) {
@@ -57,11 +99,7 @@ void grow(Volume &volume, VolumePasses &passes, int threads) {
     const std::size_t splits = passes.split({threshold, 1e-4, .45, .5});
     passes.swap(.5);
     passes.vertices({is_last_step ? .6 : .5, std::max(longest_edge, threshold), true});
-    if (static_cast<double>(volume.mesh.vertices.size()) >
-        growth_between_sorts * static_cast<double>(sorted_at)) {
-      renumber(volume, threads);
-      sorted_at = volume.n_vertices();
-    }
+    order.restore();
     passes.repair(.1);
     const double fraction =
         static_cast<double>(splits) / static_cast<double>(volume.n_vertices());
@@ -78,10 +116,7 @@ void grow(Volume &volume, VolumePasses &passes, int threads) {
       n_steady = 0;
     }
   }
-  const std::size_t changes = passes.counts().splits + passes.counts().collapses;
-  if (static_cast<double>(changes) >
-      change_between_sorts * static_cast<double>(volume.n_vertices()))
-    renumber(volume, threads);
+  order.finish();
 }
 
 /// Phase 3: sweeps at the final size.
