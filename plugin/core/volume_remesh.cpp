@@ -154,8 +154,9 @@ std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
   if (settings.agreement == AgreementMode::when_possible &&
       settings.consistency == ConsistencyMode::off)
     return "skipped: not asked for, and in 3D it takes as long as the remeshing";
-  const DistortionQuantiles gamma =
-      distortion_quantiles(volume.mesh.vertices, volume.mesh.cells, settings.threads);
+  const DistortionQuantiles gamma = distortion_quantiles(
+      volume.mesh.vertices, edges_of<3>(volume.mesh.cells, volume.mesh.vertices.size()),
+      settings.threads);
   const std::string too_fast = "skipped: the metric varies too fast, ln gamma ";
   if (gamma.p90 > largest_agreeing_p90)
     return too_fast + "p90 " + quotient(gamma.p90, largest_agreeing_p90);
@@ -271,8 +272,9 @@ VolumeResult remesh_volume(const VolumeInput &input,
   out.vertices = std::move(volume.mesh.vertices);
   out.cells = std::move(volume.mesh.cells);
   out.cell_tags = std::move(volume.mesh.region);
-  out.statistics = measure(out.vertices, out.cells, settings.threads);
-  out.distortion = distortion_quantiles(out.vertices, out.cells, settings.threads);
+  const auto edges = edges_of<3>(out.cells, out.vertices.size());
+  out.statistics = measure(out.vertices, out.cells, edges, settings.threads);
+  out.distortion = distortion_quantiles(out.vertices, edges, settings.threads);
   watch.stop();
   const VolumeCounts &counts = passes.counts();
   for (const auto &[name, value] : {std::pair{"splits", counts.splits},
