@@ -213,6 +213,25 @@ void extract_facets(const Volume &volume, VolumeResult &out) {
   }
 }
 
+void take_mesh(Volume &volume, VolumeResult &out) {
+  extract_facets(volume, out);
+  out.vertices = std::move(volume.mesh.vertices);
+  out.cells = std::move(volume.mesh.cells);
+  out.cell_tags = std::move(volume.mesh.region);
+  out.counts["curved"] = volume.surface.is_curved() ? 1 : 0;
+}
+
+void take_counts(const VolumeCounts &counts, VolumeResult &out) {
+  for (const auto &[name, value] : {std::pair{"splits", counts.splits},
+                                    {"collapses", counts.collapses},
+                                    {"edge_swaps", counts.edge_swaps},
+                                    {"face_swaps", counts.face_swaps},
+                                    {"moves", counts.moves},
+                                    {"insertions", counts.insertions},
+                                    {"repairs", counts.repairs}})
+    out.counts[name] = static_cast<double>(value);
+}
+
 /// Phases 5 and 6 where agreement or consistency was asked for, unless a budget has
 /// been spent: the certificate takes longer than a pass. @pre the mesh was renumbered.
 void certify_stars(Volume &volume, Monitor &monitor, const VolumeSettings &settings,
@@ -251,42 +270,31 @@ VolumeResult remesh_volume(const VolumeInput &input,
   Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
   Stopwatch watch(monitor, out.seconds);
 
-  watch.phase("background");
-  const Background<3> background(input.surface.points, input.cells, metric,
-                                 settings.threads);
-  Volume volume =
-      make_volume(input, metric, background, geometry, std::move(projection));
-  VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed,
-                      settings.threads);
-  watch.phase("size");
-  grow(volume, passes, settings.threads);
-  watch.phase("shape");
-  shape(passes);
-  renumber(volume, settings.threads);
-  watch.phase("agreement");
-  agree(volume, monitor, settings, out);
-  certify_stars(volume, monitor, settings, watch, out);
-
-  watch.phase("report");
-  extract_facets(volume, out);
-  out.vertices = std::move(volume.mesh.vertices);
-  out.cells = std::move(volume.mesh.cells);
-  out.cell_tags = std::move(volume.mesh.region);
+  { // what the mesh is made with is freed before the report, which takes room too
+    watch.phase("background");
+    const Background<3> background(input.surface.points, input.cells, metric,
+                                   settings.threads);
+    Volume volume =
+        make_volume(input, metric, background, geometry, std::move(projection));
+    VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed,
+                        settings.threads);
+    watch.phase("size");
+    grow(volume, passes, settings.threads);
+    watch.phase("shape");
+    shape(passes);
+    renumber(volume, settings.threads);
+    watch.phase("agreement");
+    agree(volume, monitor, settings, out);
+    certify_stars(volume, monitor, settings, watch, out);
+    watch.phase("report");
+    take_mesh(volume, out);
+    take_counts(passes.counts(), out);
+    out.reason = passes.is_full() ? StopReason::max_vertices : monitor.reason();
+  }
   const auto edges = edges_of<3>(out.cells, out.vertices.size());
   out.statistics = measure(out.vertices, out.cells, edges, settings.threads);
   out.distortion = distortion_quantiles(out.vertices, edges, settings.threads);
   watch.stop();
-  const VolumeCounts &counts = passes.counts();
-  for (const auto &[name, value] : {std::pair{"splits", counts.splits},
-                                    {"collapses", counts.collapses},
-                                    {"edge_swaps", counts.edge_swaps},
-                                    {"face_swaps", counts.face_swaps},
-                                    {"moves", counts.moves},
-                                    {"insertions", counts.insertions},
-                                    {"repairs", counts.repairs}})
-    out.counts[name] = static_cast<double>(value);
-  out.counts["curved"] = volume.surface.is_curved() ? 1 : 0;
-  out.reason = passes.is_full() ? StopReason::max_vertices : monitor.reason();
   return out;
 }
 
