@@ -52,7 +52,7 @@ def remesh_volume(
     options: RemeshOptions,
     scale: float,
 ) -> dict[str, Any]:
-    """Remesh a 3D mesh in scaled coordinates; points and metric come back scaled.
+    """Remesh a 3D mesh in scaled coordinates, as the metric is already; what comes back is scaled.
 
     The mesh itself is changed; the geometry gives the shape of its curved surfaces and ridges.
 
@@ -79,7 +79,7 @@ def remesh_volume(
         mesh.edges,
         mesh.edge_tags,
         mesh.corners,
-        metric / scale**2,
+        metric,
         geometry.points * scale,
         geometry.facets,
         geometry.facet_tags,
