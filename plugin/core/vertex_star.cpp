@@ -72,6 +72,10 @@ bool has_ridge(const Volume &volume, const Cell<3> &cell) {
 
 namespace {
 
+/// The balls of cells much larger than a unit reach far; no cavity of so many cells
+/// has been of use.
+constexpr std::size_t largest_cavity = 512;
+
 /// Cells that a cavity may take, to be tested side by side.
 class CavityCandidates {
 public:
@@ -103,6 +107,7 @@ private:
 void grow_cavity(Volume &volume, Index v, std::vector<Index> &star) {
   const Triangulation<3> &mesh = volume.mesh;
   const Vertex<3> &here = mesh.vertex(v);
+  const std::size_t n_given = star.size();
   const std::size_t n_star = mesh.is_used(v) ? star.size() : 0;
   CavityCandidates candidates;
   std::size_t i = 0;
@@ -123,7 +128,9 @@ void grow_cavity(Volume &volume, Index v, std::vector<Index> &star) {
         candidates.add(mesh, beyond.cell(), here.x);
       }
     candidates.take(volume, here.M, star);
-  } while (i < star.size());
+  } while (i < star.size() && star.size() < largest_cavity);
+  if (i < star.size())
+    star.resize(n_given);
 }
 
 } // namespace anistar
