@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from run import outcomes
-from volume_cases import make_volume_case
+from volume_cases import make_volume_case, run_volume_case
 from volume_metrics import volume_metric
 
 from anistar import remesh, validate
@@ -33,3 +33,11 @@ def test_growth_goes_on_where_splits_and_repairs_undo_each_other():
     assert validate(done.mesh) == []
     assert done.report.stop_reason == "finished"
     assert done.report.n_points > 1000  # 700 when a step above the last one never ended
+
+
+@pytest.mark.parametrize("number", [189, 227, 245])
+def test_what_went_wrong_once_goes_well(number):
+    # growth that was stuck; a sheet that touches another in a point; thin sides that meet
+    outcome = run_volume_case(make_volume_case(0, number, largest=3000.0))
+    assert outcome.problem == ""
+    assert outcome.stop == "finished"

@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 from meshes import cube
-from remesh3d.domains import changed, jittered_cube, layer, rotated, turning, uniform
+from remesh3d.domains import (
+    changed,
+    cube_with_sheet,
+    jittered_cube,
+    layer,
+    rotated,
+    turning,
+    uniform,
+)
 
 from anistar import remesh, validate
 
@@ -34,6 +42,16 @@ def test_a_ridge_keeps_its_tag_and_its_length(line, metric, turn):
     done = remesh(mesh, metric(cube(4)))
     assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
     assert [tag.tag for tag in done.report.tags if tag.dim == 1] == [9]
+
+
+def test_a_line_through_a_sheet_crosses_it_where_it_did():
+    mesh = with_line(cube_with_sheet(4), grid_points(4)[:, 2, 1])
+    done = remesh(mesh, turning(mesh))
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+    crossing = np.flatnonzero((done.mesh.points == [0.5, 0.5, 0.25]).all(axis=1))
+    assert len(crossing) == 1
+    assert crossing in done.mesh.edges
+    assert crossing in done.mesh.facets[done.mesh.facet_tags == 7]
 
 
 def test_corners_inside_and_on_faces_stay_where_they_are():
