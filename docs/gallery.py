@@ -8,8 +8,6 @@ from pathlib import Path
 
 from anistar import dolfinx_wheel
 
-EXAMPLES = Path(__file__).resolve().parents[1] / "solver_examples"
-
 #: Arguments that make the examples small enough for every build of the documentation.
 ARGUMENTS = {
     "advection_diffusion": "--complexities 500 1000 2000 --output {folder}/heat.vtu",

@@ -51,13 +51,7 @@ def intersected(M: Array, *others: Array, rule: str = "pairwise") -> Array:
        and Design 46, 2010, section 3.2.
     """
     check_rule(rule)
-    first = check_metric(M, name="metric number 1" if others else "metric")
-    n, d = first.shape[:2]
-    rest = [
-        check_metric(other, n_points=n, dim=d, name=f"metric number {k + 2}")
-        for k, other in enumerate(others)
-    ]
-    result = intersection_of([first, *rest], rule)
+    result = intersection_of(_checked([M, *others]), rule)
     # what an intersection adds is semidefinite
     return check_result(result, "the intersection", stays_definite=True)
 
@@ -98,10 +92,8 @@ def mean(metrics: Sequence[Array], weights: ArrayLike | None = None) -> Array:
     """
     if len(metrics) == 0:
         raise ValueError("a mean needs at least one metric, got none")
-    checked = [check_metric(metrics[0], name="metric number 1")]
-    n, d = checked[0].shape[:2]
-    for k, M in enumerate(metrics[1:]):
-        checked.append(check_metric(M, n_points=n, dim=d, name=f"metric number {k + 2}"))
+    checked = _checked(metrics)
+    n = len(checked[0])
     shares = np.ones(len(checked)) if weights is None else np.asarray(weights, dtype=np.float64)
     if shares.shape not in ((len(checked),), (len(checked), n)):
         raise ValueError(f"weights have shape {shares.shape} but there are {len(checked)} metrics")
@@ -113,6 +105,15 @@ def mean(metrics: Sequence[Array], weights: ArrayLike | None = None) -> Array:
     for share, M in zip(shares, checked, strict=True):
         L += np.reshape(share, (-1, 1, 1)) * log_metric(M)
     return check_result(exp_metric(L), "the log-Euclidean mean")
+
+
+def _checked(metrics: Sequence[Array]) -> list[Array]:
+    """Check metrics at the same points; the message numbers them if there are several."""
+    names = [f"metric number {k + 1}" for k in range(len(metrics))]
+    first = check_metric(metrics[0], name=names[0] if len(metrics) > 1 else "metric")
+    n, d = first.shape[:2]
+    rest = zip(metrics[1:], names[1:], strict=True)
+    return [first, *(check_metric(M, n_points=n, dim=d, name=name) for M, name in rest)]
 
 
 def limited_step(current: Array, target: Array, ratio: float = 2.0) -> Array:

@@ -1,4 +1,4 @@
-"""Weighted least squares fits of polynomials over patches of samples, many at once."""
+"""Polynomials fitted over patches of samples around vertices, many at once."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from ..algebra import eigh
+from .least_squares import Equations, factored, gain, residual, solved
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
@@ -24,19 +25,12 @@ SMALLEST_PIVOT = 1e-3
 function and the span of the previous ones over the patch. Regular patches, one-sided ones
 of two layers included, stay above 1e-2; patches that lie on a conic fall to round-off."""
 
-LAST_PIVOT = 1e-8
-"""Taken where no patch reaches `SMALLEST_PIVOT`: half of the digits are left."""
-
 FLATTEST_PATCH = 1e-12
 """Smallest ratio of the extents squared of a patch; below, its points are on a line."""
 
 BLOCK = 4096
 """Vertices fitted at once, so that the arrays of a block stay in the cache; half of it
 for each level but the first that a patch was grown."""
-
-
-LEAST_FREEDOM = 3
-"""Samples beyond the number of unknowns from which a residual says something."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,6 +187,56 @@ def _patches(
     return sparse.csr_array(ball @ first)
 
 
+@dataclass(frozen=True, kw_only=True)
+class _Patches:
+    """The patches with enough samples, in coordinates of their own.
+
+    Attributes
+    ----------
+    rows, starts, counts : ndarray (r,) of int
+        The vertices, and where the samples of each begin and how many they are.
+    members : ndarray (s,) of int
+        The samples of one patch after the other.
+    covariance, scaling : ndarray (r, d, d)
+        Of the samples, seen from the vertex, and the inverse of its root.
+    xi : ndarray (d, s)
+        Scaled coordinates of the samples.
+    """
+
+    rows: Rows
+    starts: NDArray[np.intp]
+    counts: NDArray[np.int32]
+    members: NDArray[np.int32]
+    covariance: Array
+    scaling: Array
+    xi: Array
+
+
+def _scaled_patches(
+    points: Array,
+    cloud: Cloud,
+    rows: Rows,
+    patches: sparse.csr_array,
+    enough: NDArray[np.bool_],
+) -> _Patches:
+    sizes = np.diff(patches.indptr)
+    counts, members = sizes[enough], patches.indices[np.repeat(enough, sizes)]
+    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    rows = rows[enough]
+    v = cloud.positions[members] - np.repeat(points[rows], counts, axis=0)
+    covariance = covariances(v, starts, counts)
+    scaling = _inverse_root(covariance)
+    return _Patches(
+        rows=rows,
+        starts=starts,
+        counts=counts,
+        members=members,
+        covariance=covariance,
+        scaling=scaling,
+        xi=_scaled(v, scaling, counts),
+    )
+
+
 def _fit(
     points: Array,
     cloud: Cloud,
@@ -210,47 +254,50 @@ def _fit(
     enough = np.diff(patches.indptr) >= unknowns
     if not enough.any():
         return fits
-    inside = np.repeat(enough, np.diff(patches.indptr))
-    counts, members = np.diff(patches.indptr)[enough], patches.indices[inside]
-    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
-    rows = rows[enough]
-    v = cloud.positions[members] - np.repeat(points[rows], counts, axis=0)
-    covariance = covariances(v, starts, counts)
-    scaling = _inverse_root(covariance)
-    xi = _scaled(v, scaling, counts)
-    basis = _basis(xi, pairs, cloud, members, scaling, counts)
-    weight = _weight(xi, cloud, members)
-    if cloud.at_vertices is not None:
-        base = cloud.at_vertices[rows]
-    else:
-        base = np.add.reduceat(cloud.values[members], starts, axis=0) / counts[:, None]
-    rise = (cloud.values[members] - np.repeat(base, counts, axis=0)).T
+    around = _scaled_patches(points, cloud, rows, patches, enough)
+    equations = Equations(
+        basis=_basis(around, cloud, pairs),
+        weight=_weight(around, cloud),
+        starts=around.starts,
+        counts=around.counts,
+    )
+    base = _base(around, cloud)
+    rise = (cloud.values[around.members] - np.repeat(base, around.counts, axis=0)).T
+    factor = factored(equations)
+    coefficients = solved(equations, factor, rise)
     if with_gain:
         # the response to the value at the vertex, of which all the rises are differences
-        through = 0.0 if cloud.at_vertices is None else 1.0
-        rise = np.concatenate([rise, np.full((1, len(members)), through)])
-    coefficients, pivot, factor = _least_squares(basis, weight, rise, starts)
-    if with_gain:
-        fits.gain[enough] = _gain(
-            basis, weight, starts, factor, coefficients[:, -1], list(enumerate(pairs))
-        )
-        coefficients, rise = coefficients[:, :-1], rise[:-1]
+        through = np.full((1, rise.shape[1]), 0.0 if cloud.at_vertices is None else 1.0)
+        response = solved(equations, factor, through)[:, 0]
+        fits.gain[enough] = gain(equations, factor, response, pairs)
     if with_residual:
-        fits.residual[enough] = _residual(basis, coefficients, rise, starts, counts)
-    if cloud.at_vertices is None:
-        fits.value[enough] = base + coefficients[0].T
-        coefficients = coefficients[1:]
-    else:
-        fits.value[enough] = base
-    fits.gradient[enough] = np.einsum("ikn,nia->nka", coefficients[:d], scaling)
-    local = np.zeros((len(rows), k, d, d))
-    for c, (i, j) in zip(coefficients[d:], pairs, strict=True):
-        local[:, :, i, j] = local[:, :, j, i] = c.T
+        fits.residual[enough] = residual(equations, coefficients, rise)
+    fits.value[enough] = base if cloud.at_vertices is not None else base + coefficients[0].T
+    derivatives = coefficients[unknowns - len(pairs) - d :]
+    fits.gradient[enough] = np.einsum("ikn,nia->nka", derivatives[:d], around.scaling)
     if pairs:
-        S = scaling[:, None]
-        fits.hessian[enough] = np.matmul(np.matmul(S, local), S)
-    fits.pivot[enough], fits.covariance[enough] = pivot, covariance
+        fits.hessian[enough] = _hessians(derivatives[d:], pairs, around.scaling)
+    fits.pivot[enough], fits.covariance[enough] = factor.pivot, around.covariance
     return fits
+
+
+def _base(around: _Patches, cloud: Cloud) -> Array:
+    """Values (r, k) that the fits are the rise from: at the vertices, or means of the samples."""
+    if cloud.at_vertices is not None:
+        return np.asarray(cloud.at_vertices[around.rows])
+    sums = np.add.reduceat(cloud.values[around.members], around.starts, axis=0)
+    return np.asarray(sums / around.counts[:, None])
+
+
+def _hessians(second: Array, pairs: list[tuple[int, int]], scaling: Array) -> Array:
+    """Hessians (r, k, d, d) from the second derivatives in scaled coordinates."""
+    k, r = second.shape[1:]
+    d = scaling.shape[1]
+    local = np.zeros((r, k, d, d))
+    for c, (i, j) in zip(second, pairs, strict=True):
+        local[:, :, i, j] = local[:, :, j, i] = c.T
+    S = scaling[:, None]
+    return np.asarray(np.matmul(np.matmul(S, local), S))
 
 
 def _scaled(v: Array, scaling: Array, counts: NDArray[np.int32]) -> Array:
@@ -266,19 +313,13 @@ def _scaled(v: Array, scaling: Array, counts: NDArray[np.int32]) -> Array:
     return xi
 
 
-def _basis(
-    xi: Array,
-    pairs: list[tuple[int, int]],
-    cloud: Cloud,
-    members: NDArray[np.int32],
-    scaling: Array,
-    counts: NDArray[np.int32],
-) -> list[Array]:
+def _basis(around: _Patches, cloud: Cloud, pairs: list[tuple[int, int]]) -> list[Array]:
     """Basis functions at the samples, such that coefficients are derivatives."""
+    xi = around.xi
     basis = [*xi, *(xi[i] * xi[j] * (0.5 if i == j else 1.0) for i, j in pairs)]
     if cloud.spread is not None and pairs:
-        S = np.repeat(scaling, counts, axis=0)
-        spread = np.matmul(np.matmul(S, cloud.spread[members]), S)
+        S = np.repeat(around.scaling, around.counts, axis=0)
+        spread = np.matmul(np.matmul(S, cloud.spread[around.members]), S)
         for a, (i, j) in enumerate(pairs):
             basis[len(xi) + a] += spread[:, i, j] * (0.5 if i == j else 1.0)
     if cloud.at_vertices is None:
@@ -286,10 +327,10 @@ def _basis(
     return basis
 
 
-def _weight(xi: Array, cloud: Cloud, members: NDArray[np.int32]) -> Array:
+def _weight(around: _Patches, cloud: Cloud) -> Array:
     if cloud.weights is not None:
-        return np.asarray(cloud.weights[members])
-    distance = (xi**2).sum(axis=0)
+        return np.asarray(cloud.weights[around.members])
+    distance = (around.xi**2).sum(axis=0)
     if cloud.at_vertices is None:
         return np.asarray(1.0 / (1.0 + distance))
     # the vertex itself may be a member: its equation is 0 = 0 and must weigh nothing
@@ -312,98 +353,3 @@ def _inverse_root(covariance: Array) -> Array:
     values = np.maximum(values, FLATTEST_PATCH * values[:, -1:])
     root = vectors / np.sqrt(values)[:, None, :]
     return np.asarray(np.matmul(root, vectors.transpose(0, 2, 1)))
-
-
-def _least_squares(
-    basis: list[Array], weight: Array, rise: Array, starts: NDArray[np.intp]
-) -> tuple[Array, Array, tuple[Array, Array]]:
-    """Coefficients (b, k, r) of the r fits, their smallest pivots (r,), and the factorisation.
-
-    The normal equations, scaled to a unit diagonal, by Cholesky factorisation of all the
-    patches at once: the loops are over the basis functions.
-    """
-    size, r, k = len(basis), len(starts), len(rise)
-    normal = np.empty((size, size, r))
-    right = np.empty((size, k, r))
-    for a in range(size):
-        weighted = weight * basis[a]
-        for b in range(a + 1):
-            normal[a, b] = np.add.reduceat(weighted * basis[b], starts)
-        for f in range(k):
-            right[a, f] = np.add.reduceat(weighted * rise[f], starts)
-    diagonal = np.array([normal[a, a] for a in range(size)])
-    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-    pivot = np.where((diagonal > 0.0).all(axis=0), 1.0, 0.0)
-    for a in range(size):
-        for b in range(a + 1):
-            L = normal[a, b] * scale[a] * scale[b]
-            for c in range(b):
-                L -= normal[a, c] * normal[b, c]
-            if a == b:
-                pivot = np.minimum(pivot, L)
-                normal[a, a] = np.sqrt(np.maximum(L, LAST_PIVOT))
-            else:
-                normal[a, b] = L / normal[b, b]
-    coefficients = _substituted(normal, right * scale[:, None]) * scale[:, None]
-    return coefficients, pivot, (normal, scale)
-
-
-def _gain(
-    basis: list[Array],
-    weight: Array,
-    starts: NDArray[np.intp],
-    factor: tuple[Array, Array],
-    response: Array,
-    pairs: list[tuple[int, tuple[int, int]]],
-) -> Array:
-    """Root mean squares (r,) of the second derivatives that noise of the samples makes.
-
-    Exact would be ``N^-1 (sum w^2 phi phi^T) N^-1`` with the normal matrix N; the sum is
-    replaced by N times a mean weight, one for each basis function.
-    """
-    normal, scale = factor
-    first = len(basis) - len(pairs)
-    square = np.zeros(len(starts))
-    for c, (i, j) in pairs:
-        unit = np.zeros((len(basis), 1, len(starts)))
-        unit[first + c] = scale[first + c]
-        inverse = _substituted(normal, unit)[first + c, 0] * scale[first + c]
-        phi = weight * basis[first + c] ** 2
-        total = np.add.reduceat(phi, starts)
-        # a function that is zero at all samples has no weight; the pivot of its patch is zero
-        mean = np.add.reduceat(weight * phi, starts) / np.where(total > 0.0, total, 1.0)
-        variance = inverse * mean + response[first + c] ** 2
-        square += variance * (1.0 if i == j else 2.0)
-    return np.asarray(np.sqrt(square))
-
-
-def _substituted(L: Array, right: Array) -> Array:
-    """Solve ``L L^T x = right`` for all patches, L (b, b, r) lower, right (b, k, r)."""
-    x, size = right, len(L)
-    for a in range(size):
-        for c in range(a):
-            x[a] -= L[a, c] * x[c]
-        x[a] /= L[a, a]
-    for a in reversed(range(size)):
-        for c in range(a + 1, size):
-            x[a] -= L[c, a] * x[c]
-        x[a] /= L[a, a]
-    return x
-
-
-def _residual(
-    basis: list[Array],
-    coefficients: Array,
-    rise: Array,
-    starts: NDArray[np.intp],
-    counts: NDArray[np.int32],
-) -> Array:
-    """Return the standard deviations (r, k) that the fits leave."""
-    left = rise.copy()
-    for phi, c in zip(basis, coefficients, strict=True):
-        left -= phi * np.repeat(c, counts, axis=1)
-    freedom = counts - len(basis)
-    square = np.add.reduceat(left**2, starts, axis=1)
-    enough = freedom >= LEAST_FREEDOM
-    variance = square / np.where(enough, freedom, 1)
-    return np.asarray(np.where(enough, np.sqrt(variance), np.nan).T)

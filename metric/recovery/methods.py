@@ -8,8 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .fit import LAST_PIVOT, SMALLEST_PIVOT, Fits, covariances, fit_patches
+from .fit import SMALLEST_PIVOT, Fits, covariances, fit_patches
 from .larger_patches import grow_against_noise, is_measurable
+from .least_squares import LAST_PIVOT
 from .noise import NOISE_MARGIN, ROUNDOFF, damped, estimated_noise, hessian_norm
 from .projection import L2Projection
 from .setting import Setting

@@ -13,7 +13,8 @@ from scipy import sparse
 
 from ..graph import pair_graph
 from .cells import CellGeometry
-from .fit import LAST_PIVOT, SMALLEST_PIVOT, Cloud, fit_patches
+from .fit import SMALLEST_PIVOT, Cloud, fit_patches
+from .least_squares import LAST_PIVOT
 from .spaces import QuadraticCells
 
 Array = NDArray[np.float64]

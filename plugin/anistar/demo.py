@@ -111,12 +111,11 @@ def run_demo(
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
     coarse = channel()
-    options = AdaptOptions(metric=MetricOptions(h_min=SMALLEST_SIZE), remesh=CURVES)
     loop = adapt_loop(
         solve,
         coarse,
         LoopOptions(
-            adapt=options,
+            adapt=AdaptOptions(metric=MetricOptions(h_min=SMALLEST_SIZE), remesh=CURVES),
             complexities=tuple(c for c in complexities for _ in range(REPEATS)),
             max_iterations=REPEATS * len(complexities),
         ),

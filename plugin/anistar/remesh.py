@@ -92,8 +92,11 @@ def remesh(
     _check_frozen(options.frozen_tags, geometry)
     scale = _unit_scale(mesh.points)
     call = _call_core if mesh.dim == 2 else remesh_volume
+    metric /= scale**2  # a copy, as check_metric returns it
     raw = call(mesh, metric, geometry, project, options, scale)
-    points = raw["points"] / scale
+    points, metric = raw["points"], raw["metric"]
+    points /= scale
+    metric *= scale**2
     kept = geometry if mesh.dim == 2 else mesh
     ridges = {name: raw[name] for name in ("edges", "edge_tags") if name in raw}
     new = Mesh._trusted(
@@ -109,7 +112,7 @@ def remesh(
     report = report_of(raw, geometry, new, has_ridges=len(mesh.edges) > 0)
     if mesh.dim == 3 and report.counts["curved"]:
         check_surfaces(new, report)
-    return Remeshed(new, raw["metric"] * scale**2, report)
+    return Remeshed(new, metric, report)
 
 
 def _unit_scale(points: Float) -> float:
@@ -130,12 +133,12 @@ def _call_core(
     options: RemeshOptions,
     scale: float,
 ) -> dict[str, Any]:
-    """Remesh in scaled coordinates; points and metric come back scaled."""
+    """Remesh in scaled coordinates, as the metric is already; what comes back is scaled."""
     try:
         return _core.remesh2(
             mesh.points * scale,
             mesh.cells,
-            metric / scale**2,
+            metric,
             geometry.points * scale,
             geometry.cells,
             geometry.cell_tags,
@@ -144,14 +147,7 @@ def _call_core(
             geometry.corners,
             np.array(options.frozen_tags, dtype=np.int32),
             options.ridge_angle,
-            options.hausdorff_number,
-            options.vertex_bound,
-            options.time_bound,
-            options.agreement_mode,
-            options.consistency_mode,
-            options.consistency.as_parameters(),
-            options.seed,
-            options.threads,
+            options.as_settings(),
             None if project is None else pointwise(project, scale),
             options.callback,
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -88,22 +88,15 @@ class RemeshOptions:
         if not 1 <= self.threads <= 256:
             raise ValueError(f"threads must be in [1, 256], got {self.threads}")
 
-    @property
-    def vertex_bound(self) -> int:
-        """The number of vertices that is not exceeded."""
-        return 2**62 if self.max_vertices is None else self.max_vertices
-
-    @property
-    def time_bound(self) -> float:
-        """The wall time, in seconds, after which the call stops."""
-        return math.inf if self.max_seconds is None else self.max_seconds
-
-    @property
-    def agreement_mode(self) -> str:
-        """The name of the mode of the agreement phase in the core."""
-        return {True: "on", False: "off", "auto": "auto"}[self.agreement]
-
-    @property
-    def consistency_mode(self) -> str:
-        """The name of the mode of the consistency phase in the core."""
-        return {True: "on", False: "off", "pure": "pure"}[self.until_consistent]
+    def as_settings(self) -> dict[str, Any]:
+        """Return what the core is told in 2D and in 3D, where a bound that is off is infinite."""
+        return {
+            "hausdorff_number": self.hausdorff_number,
+            "max_vertices": 2**62 if self.max_vertices is None else self.max_vertices,
+            "max_seconds": math.inf if self.max_seconds is None else self.max_seconds,
+            "agreement": {True: "on", False: "off", "auto": "auto"}[self.agreement],
+            "consistency": {True: "on", False: "off", "pure": "pure"}[self.until_consistent],
+            "parameters": self.consistency.as_parameters(),
+            "seed": self.seed,
+            "threads": self.threads,
+        }

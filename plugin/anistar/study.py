@@ -166,15 +166,9 @@ def convergence_study(
         If there are fewer than two complexities, not exactly one of `error` and `exact`, or an
         unknown baseline.
     """
-    if len(complexities) < 2:
-        raise ValueError(f"a study needs at least 2 complexities, not {len(complexities)}")
     if (error is None) == (exact is None):
         raise ValueError("give exactly one of error and exact")
-    if repeats < 1:
-        raise ValueError(f"repeats must be at least 1, not {repeats}")
-    unknown = sorted(set(baselines) - set(BASELINES))
-    if unknown:
-        raise ValueError(f"baselines are {', '.join(BASELINES)}, not {unknown[0]!r}")
+    _check(complexities, repeats, baselines)
     measure = error if error is not None else _error_against(exact, field)  # type: ignore[arg-type]
     options = options if options is not None else AdaptOptions()
     shape = geometry if geometry is not None else mesh
@@ -197,6 +191,16 @@ def convergence_study(
     table = _rows(complexities, [(step.mesh, step.fields) for step in steps], measure)
     counts, errors = [row.points for row in table], [row.error for row in table]
     return Study(table, observed_order(counts, errors, mesh.dim), steps, others)
+
+
+def _check(complexities: Sequence[float], repeats: int, baselines: Sequence[str]) -> None:
+    if len(complexities) < 2:
+        raise ValueError(f"a study needs at least 2 complexities, not {len(complexities)}")
+    if repeats < 1:
+        raise ValueError(f"repeats must be at least 1, not {repeats}")
+    unknown = sorted(set(baselines) - set(BASELINES))
+    if unknown:
+        raise ValueError(f"baselines are {', '.join(BASELINES)}, not {unknown[0]!r}")
 
 
 def observed_order(points: Sequence[int], errors: Sequence[float], dim: int) -> float:

@@ -29,8 +29,9 @@ struct VertexRange {
   [[nodiscard]] bool contains(Index v) const {
     return (first <= v && v < last) || (first_new <= v && v < last_new);
   }
-  [[nodiscard]] bool contains(const Cell<2> &cell) const {
-    return contains(cell[0]) && contains(cell[1]) && contains(cell[2]);
+  template <std::size_t n>
+  [[nodiscard]] bool contains(const std::array<Index, n> &cell) const {
+    return std::all_of(cell.begin(), cell.end(), [&](Index v) { return contains(v); });
   }
 };
 

@@ -14,17 +14,4 @@ template <std::size_t d>
                                                const Vertex<d> &at, Index cell,
                                                double gamma_0);
 
-/// The sizing field at the centre of a ball in the metric of v: one, the unit of the
-/// metric, or the bounded distortion radius where that is smaller (Definition 2.2).
-template <std::size_t d>
-[[nodiscard]] inline double distortion_size(const Background<d> &background,
-                                            const Circumsphere<d> &ball,
-                                            Index background_cell, double gamma_0) {
-  if (std::isinf(gamma_0))
-    return 1;
-  const Vertex<d> centre = background.vertex(ball.centre, background_cell);
-  return std::min(
-      1., bounded_distortion_radius<d>(background, centre, background_cell, gamma_0));
-}
-
 } // namespace anistar

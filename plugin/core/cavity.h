@@ -46,13 +46,6 @@ public:
   /// keeps the mesh valid.
   [[nodiscard]] bool is_star_shaped(const Vector<d> &x) const;
 
-  /// The corners of the cell that would replace the cavity at facet h.
-  [[nodiscard]] Cell<d> new_cell(HalfFacet h, Index apex) const {
-    Cell<d> cell = mesh_.at(h.cell());
-    cell[h.facet()] = apex;
-    return cell;
-  }
-
   /// Replaces the cavity by the star of the apex. The new cells keep the region of the
   /// cavity cell behind their facet, outer facets keep their constraints, and `ridges`
   /// gives those of facets at the apex.

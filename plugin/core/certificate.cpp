@@ -97,11 +97,17 @@ Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
 }
 
 template <std::size_t d> std::uint8_t DelaunayTest<d>::bits(Index cell) {
+  const Cell<d> &vertices = mesh_.cells[static_cast<std::size_t>(cell)];
+  const auto metric = [&](unsigned k) -> const SymmetricTensor<d> & {
+    return mesh_.vertices[static_cast<std::size_t>(vertices[k])].M;
+  };
   unsigned found = 0;
   reach_ = 0;
   for (unsigned k = 0; k <= d; ++k) {
-    const Index v = mesh_.cells[static_cast<std::size_t>(cell)][k];
-    if (violator(cell, mesh_.vertices[static_cast<std::size_t>(v)].M) == none)
+    unsigned same = 0; // the first vertex with this metric
+    while (metric(same).entries != metric(k).entries)
+      ++same;
+    if (same < k ? found >> same & 1 : violator(cell, metric(k)) == none)
       found |= 1u << k;
   }
   return static_cast<std::uint8_t>(found);

@@ -1,7 +1,10 @@
 #include "consistency.h"
 
-#include "bounded_distortion.h"
+#include "bad_cells.h"
+#include "ellipse_sampler.h"
+#include "mesh_walk.h"
 #include "relocation.h"
+#include "round_bounds.h"
 
 #include <cmath>
 #include <utility>
@@ -27,19 +30,8 @@ constexpr int not_insertable = std::numeric_limits<int>::max();
 class Rounds {
 public:
   Rounds(Workspace &w, const ConsistencyParameters &parameters, std::uint64_t seed,
-         bool everywhere, ConsistencyCounts &counts)
-      : w_(w), mesh_(w.mesh), parameters_(parameters), seed_(seed),
-        everywhere_(everywhere), counts_(counts) {}
-
-  [[nodiscard]] std::vector<BadCell<2>>
-  bad_cells(const std::vector<std::uint8_t> &bits) const {
-    return anistar::bad_cells(
-        mesh_, bits, parameters_, everywhere_, [&](const Circumcircle &ball, Index v) {
-          return distortion_size(w_.background, ball,
-                                 mesh_.background_cell[static_cast<std::size_t>(v)],
-                                 parameters_.gamma_0);
-        });
-  }
+         ConsistencyCounts &counts)
+      : w_(w), mesh_(w.mesh), parameters_(parameters), seed_(seed), counts_(counts) {}
 
   /// One point for each bad cell that shares no vertex with one treated before, of the
   /// first rule that can place any. @returns that rule, `kept` when no rule can.
@@ -67,7 +59,6 @@ private:
   Triangulation<2> &mesh_;
   const ConsistencyParameters &parameters_;
   std::uint64_t seed_;
-  bool everywhere_; ///< rules 1 to 3 also for cells that are consistent
   ConsistencyCounts &counts_;
   std::vector<std::pair<Index, HalfFacet>> ring_;
 
@@ -197,6 +188,14 @@ private:
   return 1 - static_cast<double>(passing) / static_cast<double>(bits.size());
 }
 
+/// Whether vertices are moved after a round. While failures are everywhere, that helps
+/// little for what it costs.
+[[nodiscard]] bool is_moved_after(int round, double failing) {
+  return failing < few_failing ||
+         (failing < many_failing &&
+          round % rounds_between_moves == rounds_between_moves - 1);
+}
+
 } // namespace
 
 ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
@@ -205,8 +204,8 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                                           std::uint64_t seed, int threads,
                                           bool relocate, StarCheck &check) {
   ConsistencyCounts counts;
-  Rounds rounds(w, parameters, seed, !relocate, counts);
-  double most = 0;
+  Rounds rounds(w, parameters, seed, counts);
+  RoundBounds bounds{max_rounds, patience, 0};
   MeshOnCurves best;
   StarCheck best_check;
   int since_best = 0;
@@ -214,45 +213,34 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
     best = w.on_curves;
     best_check = check;
     since_best = 0;
-    most = (1 + parameters.max_growth) * static_cast<double>(w.mesh.vertices.size());
+    bounds.most_vertices =
+        (1 + parameters.max_growth) * static_cast<double>(w.mesh.vertices.size());
   };
   start();
   bool is_sizing = !relocate; // the pure mode starts from the boundary alone
   for (counts.rounds = 0;; ++counts.rounds) {
-    const std::vector<BadCell<2>> bad = rounds.bad_cells(check.bits);
+    // without moves rules 1 to 3 are also for cells that are consistent
+    const std::vector<BadCell<2>> bad =
+        bad_cells<2>(w.mesh, w.background, check.bits, parameters, !relocate);
     if (failing_fraction(check.bits) < failing_fraction(best_check.bits)) {
       best = w.on_curves;
       best_check = check;
       since_best = 0;
     }
-    if (bad.empty())
-      counts.stop = "consistent";
-    else if (counts.rounds == max_rounds)
-      counts.stop = "max_rounds";
-    else if (static_cast<double>(w.mesh.vertices.size()) > most)
-      counts.stop = "max_growth";
-    else if (since_best > patience)
-      counts.stop = "stalled";
-    else if (!monitor.keep_going(w.mesh.vertices.size(), 0) ||
-             !monitor.look(double(counts.rounds) / max_rounds))
-      counts.stop = name_of(monitor.reason());
+    counts.stop = bounds.stop(bad.empty(), counts.rounds, since_best,
+                              w.mesh.vertices.size(), monitor);
     if (!counts.stop.empty())
       break;
     // in the pure mode rules 1 to 3 end by packing, and only rule 4 can stall
     const Rule rule = rounds.treat(bad, counts.rounds);
     since_best += relocate || rule == Rule::inconsistency || rule == Rule::kept;
-    // while failures are everywhere, moving vertices helps little for what it costs
-    const double failing = failing_fraction(check.bits);
     const bool moving =
-        relocate && (failing < few_failing ||
-                     (failing < many_failing && counts.rounds % rounds_between_moves ==
-                                                    rounds_between_moves - 1));
+        relocate && is_moved_after(counts.rounds, failing_fraction(check.bits));
+    const std::uint64_t round_seed = seed + 1 + std::uint64_t(counts.rounds);
     if (moving)
-      (void)agree(w, legaliser, monitor, seed + 1 + std::uint64_t(counts.rounds),
-                  threads);
+      (void)agree(w, legaliser, monitor, round_seed, threads);
     renumber(w, threads);
-    check = check_stars(w, monitor, seed + 1 + std::uint64_t(counts.rounds), threads,
-                        moving);
+    check = check_stars(w, monitor, round_seed, threads, moving);
     is_sizing = is_sizing && rule == Rule::size;
     if (is_sizing)
       start(); // a mesh too coarse to be judged is no best one, and may grow

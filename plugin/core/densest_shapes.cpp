@@ -32,11 +32,8 @@ void DensestShapes::evaluate(const Vertex<3> &vertex, double poor) {
                             b_[1][i] - y, b_[2][i] - z, c_[0][i] - x, c_[1][i] - y,
                             c_[2][i] - z, m);
   }
-  for (std::size_t i = 0; i < n_; ++i) {
-    const float root =
-        detail::cube_root(static_cast<float>(std::max(cubed_[i], 1e-30)));
-    quality_[i] = cubed_[i] > 0 ? root : -1.f;
-  }
+  for (std::size_t i = 0; i < n_; ++i)
+    quality_[i] = mean_ratio(cubed_[i]);
   const auto bound = static_cast<float>(poor);
   float least = 1, sum = 0, missing = 0;
   for (std::size_t i = 0; i < n_; ++i) {

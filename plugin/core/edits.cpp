@@ -3,7 +3,6 @@
 namespace anistar {
 namespace {
 
-constexpr int max_walk_steps = 10000;
 /// A point nearer than this to an edge of its cell, relative to the cell's height over
 /// it, is inserted into both cells of the edge.
 constexpr double on_edge = 1e-6;
@@ -65,32 +64,6 @@ OnCurve curve_edges_at(const Workspace &w, Index v,
 }
 
 } // namespace
-
-Walk walk_to(const Triangulation<2> &mesh, Index start, const Vector<2> &x,
-             const VertexRange &range) {
-  Index cell = start;
-  HalfFacet came;
-  for (int step = 0; step < max_walk_steps; ++step) {
-    HalfFacet cross;
-    for (std::size_t k = 0; k < 3 && !cross.exists(); ++k) {
-      const HalfFacet edge(cell, (k + static_cast<std::size_t>(step)) % 3);
-      if (edge == came)
-        continue;
-      const auto [a, b] = mesh.facet(edge);
-      if (orientation(mesh.vertex(a).x, mesh.vertex(b).x, x) == Orientation::negative)
-        cross = edge;
-    }
-    if (!cross.exists())
-      return {cell, {}};
-    if (mesh.constraint(cross) != none)
-      return {none, cross};
-    came = mesh.opposite(cross);
-    cell = came.cell();
-    if (!range.contains(mesh.at(cell)))
-      return {};
-  }
-  return {};
-}
 
 Index insert_in_cell(Triangulation<2> &mesh, Cavity<2> &cavity, Index cell,
                      const Vertex<2> &vertex, Index background_cell) {

@@ -2,7 +2,6 @@
 // The edits of a mesh on its curves, each one cavity of the cavity operator.
 
 #include "background.h"
-#include "blocks.h"
 #include "cavity.h"
 #include "curves.h"
 #include "start.h"
@@ -31,16 +30,6 @@ struct Workspace {
     return edge_length(mesh.vertex(a), mesh.vertex(b));
   }
 };
-
-/// What a walk through the mesh met.
-struct Walk {
-  Index cell = none; ///< where the point is, none when it was stopped
-  HalfFacet wall;    ///< by this constrained edge, if it exists
-};
-
-/// Walks from a cell towards x without crossing a constraint or leaving the range.
-[[nodiscard]] Walk walk_to(const Triangulation<2> &mesh, Index start,
-                           const Vector<2> &x, const VertexRange &range = {});
 
 /// Inserts an interior vertex into the cell that contains it. @returns the vertex, none
 /// when it lies too near to an edge. The new cells are cavity.star().

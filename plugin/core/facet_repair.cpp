@@ -88,17 +88,12 @@ bool FacetRepair::swap(HalfFacet facet, Demand demand) {
 }
 
 bool FacetRepair::remove_edge(Index c, Index a, Index b, Demand demand) {
-  if (!shell_of(volume_.mesh, c, a, b, shell_))
+  const auto walls = walls_of_removable(volume_, c, a, b, longest_ring, shell_);
+  if (!walls)
     return false;
-  const std::size_t n = shell_.n_ring();
-  if (n < 3 || n > longest_ring)
-    return false;
-  const EdgeWalls walls = walls_at(volume_, shell_);
-  if (!may_vanish(volume_, shell_, walls))
-    return false;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (walls.n == 2 && k != walls.position[0] && k != walls.position[1])
-      continue; // the new facets of the surface must meet at the apex
+  for (std::size_t k = 0; k < shell_.n_ring(); ++k) {
+    if (!walls->admits_apex(k))
+      continue;
     if (replace(shell_.all(), shell_.ring[k], {a, b},
                 {agreement_floor, 0, 0, state_.hausdorff_number}, demand))
       return true;

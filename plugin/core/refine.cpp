@@ -1,6 +1,7 @@
 #include "refine.h"
 
 #include "blocks.h"
+#include "mesh_walk.h"
 
 #include <cmath>
 #include <memory>

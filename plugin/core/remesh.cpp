@@ -1,9 +1,9 @@
 #include "remesh.h"
 
-#include "agreement.h"
+#include "consistency.h"
 #include "outline.h"
 #include "refine.h"
-#include "star_check.h"
+#include "shape.h"
 #include "start.h"
 #include "stopwatch.h"
 
@@ -78,7 +78,7 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
 /// Phases 4 and 5, as far as the metric and the settings let them.
 void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                    const RemeshSettings &settings, Stopwatch &watch,
-                   RemeshResult &out) {
+                   RemeshResult<2> &out) {
   watch.phase("agreement");
   out.distortion =
       distortion_quantiles(w.mesh.vertices, w.mesh.cells, settings.threads);
@@ -131,7 +131,7 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
 }
 
 /// Hands the arrays of the mesh over; the workspace is spent.
-void extract(Workspace &w, RemeshResult &out) {
+void extract(Workspace &w, RemeshResult<2> &out) {
   Triangulation<2> &mesh = w.mesh;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (std::size_t i = 0; i < 3; ++i) {
@@ -148,10 +148,10 @@ void extract(Workspace &w, RemeshResult &out) {
 
 } // namespace
 
-RemeshResult remesh(const Background<2> &background, const GeometryInput &input,
-                    const Projection &projection, const RemeshSettings &settings,
-                    Monitor::Progress progress) {
-  RemeshResult out;
+RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &input,
+                       const Projection &projection, const RemeshSettings &settings,
+                       Monitor::Progress progress) {
+  RemeshResult<2> out;
   Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
   Stopwatch watch(monitor, out.seconds);
 

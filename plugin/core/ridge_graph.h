@@ -35,9 +35,6 @@ public:
     return edges_[static_cast<std::size_t>(edge)];
   }
   [[nodiscard]] const std::vector<RidgeEdge> &edges() const { return edges_; }
-  void set_curve(Index edge, Index curve) {
-    edges_[static_cast<std::size_t>(edge)].curve = curve;
-  }
   /// Replaces the edge ab by a-v and v-b.
   void split(Index a, Index b, Index v);
   /// Replaces the edges u-v and v-w by u-w.

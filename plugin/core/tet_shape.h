@@ -46,13 +46,11 @@ inline constexpr double squared_flatness = flatness * flatness;
 ///   so v is off by 8.01 u times the permanent of |e|, |f|, |g|. That is at most the
 ///   product of their 1-norms, 3 sqrt 3 |e| |f| |g|, which is at most S^1.5 because
 ///   |e|^2 + |f|^2 + |g|^2 <= S.
-/// - `plain` is S within 64 u: by Cauchy's inequality 4 (ee + ff + gg) - ss is at least
-/// a
-///   quarter of what it is computed from.
+/// - `plain` is S within 64 u: by Cauchy's inequality 4 (ee + ff + gg) - ss is at
+///   least a quarter of what it is computed from.
 /// - So v > 64 u S^1.5, but for those errors and a few u, leaves more than 55 u S^1.5.
 /// - Underflow: v v > 0 needs v > 2^-538, while products that underflow change v by
-/// less
-///   than 2^-1070 times an edge; a bound that underflows is below 2^-537.
+///   less than 2^-1070 times an edge; a bound that underflows is below 2^-537.
 /// - Overflow of the bound or of both gives no positive difference.
 /// Cells between that bound and zero are refused: they are flat to whoever computes
 /// with doubles.
@@ -82,16 +80,21 @@ inline constexpr double squared_flatness = flatness * flatness;
   return v > 0 && solid > 0 ? shape : -1;
 }
 
+/// The mean ratio to single precision; -1 when its cube is not positive. There is no
+/// branch, for loops over many cells.
+[[nodiscard]] inline float mean_ratio(double cubed) {
+  const float root = detail::cube_root(static_cast<float>(std::max(cubed, 1e-30)));
+  return cubed > 0 ? root : -1.f;
+}
+
 /// Mean ratio of the cell abcd; -1 when it is flat or inverted.
 [[nodiscard]] inline double shape_quality(const Vertex<3> &a, const Vertex<3> &b,
                                           const Vertex<3> &c, const Vertex<3> &d) {
   const Vector<3> e = b.x - a.x, f = c.x - a.x, g = d.x - a.x;
   SymmetricTensor<3> m = metric_sum(a.M, b.M, c.M);
   m += d.M;
-  const double cubed = cubed_shape(e[0], e[1], e[2], f[0], f[1], f[2], g[0], g[1], g[2],
-                                   m.entries.data());
-  return cubed > 0 ? static_cast<double>(detail::cube_root(static_cast<float>(cubed)))
-                   : -1;
+  return static_cast<double>(mean_ratio(cubed_shape(
+      e[0], e[1], e[2], f[0], f[1], f[2], g[0], g[1], g[2], m.entries.data())));
 }
 
 /// Six times the volume.
@@ -100,12 +103,6 @@ inline constexpr double squared_flatness = flatness * flatness;
   return (b - a).dot((c - a).cross(d - a));
 }
 
-/// Whether p lies in the circumball of the positive cell abcd in the metric M, beyond
-/// round-off. The determinant is linear in M. It proposes, and decides nothing.
-[[nodiscard]] bool is_in_ball(const SymmetricTensor<3> &M, const Vector<3> &a,
-                              const Vector<3> &b, const Vector<3> &c,
-                              const Vector<3> &d, const Vector<3> &p);
-
 /// Close to mean_length, without a logarithm.
 [[nodiscard]] inline double fast_length(const Vertex<3> &a, const Vertex<3> &b) {
   const Vector<3> e = b.x - a.x;
@@ -113,6 +110,35 @@ inline constexpr double squared_flatness = flatness * flatness;
                lb = std::sqrt(quadratic<3>(b.M, e));
   return (2 * std::sqrt(la * lb) + .5 * (la + lb)) / 3;
 }
+
+/// Which of many cells have one point in their circumballs in one metric, beyond
+/// round-off. The determinant is linear in the metric. It proposes, and decides
+/// nothing.
+class BallTests {
+public:
+  static constexpr std::size_t capacity = 128;
+
+  void clear() { n_ = 0; }
+  [[nodiscard]] std::size_t size() const { return n_; }
+  /// @pre abcd is positive, and there are less than `capacity`.
+  void add(const Vector<3> &a, const Vector<3> &b, const Vector<3> &c,
+           const Vector<3> &d, const Vector<3> &p) {
+    for (int k = 0; k < 3; ++k) {
+      a_[k][n_] = a[k] - p[k];
+      b_[k][n_] = b[k] - p[k];
+      c_[k][n_] = c[k] - p[k];
+      d_[k][n_] = d[k] - p[k];
+    }
+    ++n_;
+  }
+  void evaluate(const SymmetricTensor<3> &M);
+  [[nodiscard]] bool is_in_ball(std::size_t k) const { return excess_[k] > 0; }
+
+private:
+  std::size_t n_ = 0;
+  double a_[3][capacity], b_[3][capacity], c_[3][capacity], d_[3][capacity];
+  double excess_[capacity];
+};
 
 /// The cells around one vertex, laid out for many trial positions of it.
 class StarShapes {

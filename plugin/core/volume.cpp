@@ -159,13 +159,6 @@ bool shell_of(const Triangulation<3> &mesh, Index start, Index a, Index b,
   return true;
 }
 
-bool may_vanish(const Volume &volume, const Shell &shell, const EdgeWalls &walls) {
-  const bool is_ridge = volume.feature(shell.a) <= 1 && volume.feature(shell.b) <= 1 &&
-                        volume.ridges.find(shell.a, shell.b) != none;
-  return !is_ridge &&
-         (walls.n == 0 || (walls.n == 2 && walls.patch[0] == walls.patch[1]));
-}
-
 EdgeWalls walls_at(const Volume &volume, const Shell &shell) {
   EdgeWalls walls;
   const Triangulation<3> &mesh = volume.mesh;
@@ -188,6 +181,20 @@ EdgeWalls walls_at(const Volume &volume, const Shell &shell) {
     if (!shell.is_closed && k + 1 == shell.n_cells)
       note(k + 1, mesh.constraint(HalfFacet(c, mesh.local_index(c, shell.ring[k]))));
   }
+  return walls;
+}
+
+std::optional<EdgeWalls> walls_of_removable(const Volume &volume, Index cell, Index a,
+                                            Index b, std::size_t longest_ring,
+                                            Shell &shell) {
+  if (!shell_of(volume.mesh, cell, a, b, shell) || shell.n_ring() < 3 ||
+      shell.n_ring() > longest_ring)
+    return {};
+  const EdgeWalls walls = walls_at(volume, shell);
+  const bool is_ridge = volume.feature(a) <= 1 && volume.feature(b) <= 1 &&
+                        volume.ridges.find(a, b) != none;
+  if (is_ridge || !(walls.n == 0 || (walls.n == 2 && walls.patch[0] == walls.patch[1])))
+    return {};
   return walls;
 }
 

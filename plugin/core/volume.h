@@ -156,11 +156,20 @@ struct EdgeWalls {
   std::size_t n = 0;
   std::array<std::size_t, 4> position{};
   std::array<Index, 4> patch{};
+
+  /// Whether cells around vertex k of the ring may replace those around the edge: new
+  /// facets of a surface meet there.
+  [[nodiscard]] bool admits_apex(std::size_t k) const {
+    return n != 2 || k == position[0] || k == position[1];
+  }
 };
 [[nodiscard]] EdgeWalls walls_at(const Volume &volume, const Shell &shell);
-/// Whether an edge is no ridge and has no walls or two of one patch: it may vanish.
-[[nodiscard]] bool may_vanish(const Volume &volume, const Shell &shell,
-                              const EdgeWalls &walls);
+/// The walls of an edge that may be removed: it is no ridge, it has none or two of one
+/// patch, and its ring is no longer than that. @param shell becomes that of the edge
+[[nodiscard]] std::optional<EdgeWalls> walls_of_removable(const Volume &volume,
+                                                          Index cell, Index a, Index b,
+                                                          std::size_t longest_ring,
+                                                          Shell &shell);
 
 /// Renumbers along a Hilbert curve, and cuts into slabs.
 void renumber(Volume &volume, int threads = 1);

@@ -1,7 +1,9 @@
 #include "volume_consistency.h"
 
-#include "bounded_distortion.h"
+#include "bad_cells.h"
 #include "ellipse_sampler.h"
+#include "mesh_walk.h"
+#include "round_bounds.h"
 #include "vertex_mover.h"
 #include "volume_agreement.h"
 #include "volume_star_check.h"
@@ -80,16 +82,6 @@ public:
       : volume_(volume), mesh_(volume.mesh), monitor_(monitor), parameters_(parameters),
         seed_(seed), operator_(volume), insertion_(volume),
         mover_(volume, insertion_, operator_, parameters.sigma_0), counts_(counts) {}
-
-  [[nodiscard]] std::vector<BadCell<3>>
-  bad_cells(const std::vector<std::uint8_t> &bits) const {
-    return anistar::bad_cells(
-        mesh_, bits, parameters_, false, [&](const Circumsphere<3> &ball, Index v) {
-          return distortion_size(volume_.background, ball,
-                                 mesh_.background_cell[static_cast<std::size_t>(v)],
-                                 parameters_.gamma_0);
-        });
-  }
 
   /// One change for each bad cell that shares no vertex with one treated before.
   void treat(const std::vector<BadCell<3>> &bad, int round, const Effort &effort) {
@@ -202,7 +194,7 @@ private:
       Vector<3> x = ball.centre;
       if (k > 0)
         x += ellipse.step(parameters_.delta * ball.radius, random);
-      const VolumeWalk at = walk_to(mesh_, item.cell, x);
+      const Walk at = walk_to(mesh_, item.cell, x);
       if (at.wall.exists())
         wall = at.wall;
       if (at.cell == none)
@@ -335,24 +327,17 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
                                           int threads, DelaunayBits &known) {
   ConsistencyCounts counts;
   Rounds rounds(volume, monitor, parameters, seed, counts);
-  const double most =
-      (1 + parameters.max_growth) * static_cast<double>(volume.n_vertices());
+  const RoundBounds bounds{max_rounds, patience,
+                           (1 + parameters.max_growth) *
+                               static_cast<double>(volume.n_vertices())};
   Progress progress{failing_fraction(volume.mesh, known.bits)};
   progress.reference = progress.failing;
   std::optional<Snapshot> best(std::in_place, volume, known, progress.failing);
   for (counts.rounds = 0;; ++counts.rounds) {
-    const std::vector<BadCell<3>> bad = rounds.bad_cells(known.bits);
-    if (bad.empty())
-      counts.stop = "consistent";
-    else if (counts.rounds == max_rounds)
-      counts.stop = "max_rounds";
-    else if (static_cast<double>(volume.n_vertices()) > most)
-      counts.stop = "max_growth";
-    else if (progress.since_best > patience)
-      counts.stop = "stalled";
-    else if (!monitor.keep_going(volume.n_vertices(), 0) ||
-             !monitor.look(double(counts.rounds) / max_rounds))
-      counts.stop = name_of(monitor.reason());
+    const std::vector<BadCell<3>> bad =
+        bad_cells<3>(volume.mesh, volume.background, known.bits, parameters, false);
+    counts.stop = bounds.stop(bad.empty(), counts.rounds, progress.since_best,
+                              volume.n_vertices(), monitor);
     if (!counts.stop.empty())
       break;
     const std::uint32_t since = ++volume.clock;

@@ -5,35 +5,10 @@
 namespace anistar {
 namespace {
 
-constexpr int max_walk_steps = 200;
 /// Larger cavities belong to metrics that no mesh nearby fits.
 constexpr std::size_t max_cells = 96;
 
 } // namespace
-
-VolumeWalk walk_to(const Triangulation<3> &mesh, Index start, const Vector<3> &x) {
-  Index cell = start;
-  HalfFacet came;
-  for (int step = 0; step < max_walk_steps; ++step) {
-    HalfFacet cross;
-    for (std::size_t k = 0; k < 4 && !cross.exists(); ++k) {
-      const HalfFacet h(cell, (k + static_cast<std::size_t>(step)) % 4);
-      if (h == came)
-        continue;
-      const Facet<3> t = mesh.facet(h);
-      if (orientation(mesh.vertex(t[0]).x, mesh.vertex(t[1]).x, mesh.vertex(t[2]).x,
-                      x) == Orientation::negative)
-        cross = h;
-    }
-    if (!cross.exists())
-      return {cell, {}};
-    if (mesh.constraint(cross) != none)
-      return {none, cross};
-    came = mesh.opposite(cross);
-    cell = came.cell();
-  }
-  return {};
-}
 
 EdgeFeature feature_of(const Volume &volume, const Shell &shell) {
   EdgeFeature out;

@@ -7,16 +7,6 @@
 
 namespace anistar {
 
-/// What a walk through the mesh met.
-struct VolumeWalk {
-  Index cell = none; ///< where the point is, none when it was stopped
-  HalfFacet wall;    ///< by this constrained facet, if it exists
-};
-
-/// Walks from a cell towards x without crossing a constraint.
-[[nodiscard]] VolumeWalk walk_to(const Triangulation<3> &mesh, Index start,
-                                 const Vector<3> &x);
-
 /// An edge of the mesh as a place for a new vertex.
 struct EdgeFeature {
   Index dimension = 3, lies_on = none; ///< of its inner points

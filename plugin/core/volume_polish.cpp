@@ -154,20 +154,15 @@ void VolumePasses::polish_cells(double below) {
 /// Removes an edge where that improves the worst cell around it.
 bool VolumePasses::polish_edge(Index c, Index a, Index b) {
   const Triangulation<3> &mesh = volume_.mesh;
-  if (!shell_of(mesh, c, a, b, shell_))
-    return false;
-  const std::size_t n = shell_.n_ring();
-  if (n < 3 || n > longest_ring)
-    return false;
-  const EdgeWalls walls = walls_at(volume_, shell_);
-  if (!may_vanish(volume_, shell_, walls))
+  const auto walls = walls_of_removable(volume_, c, a, b, longest_ring, shell_);
+  if (!walls)
     return false;
   double worst = 1;
   for (Index cell : shell_.all())
     worst = std::min(worst, measured(mesh, mesh.at(cell)));
-  for (std::size_t k = 0; k < n; ++k) {
-    if (walls.n == 2 && k != walls.position[0] && k != walls.position[1])
-      continue; // the new facets of the surface must meet at the apex
+  for (std::size_t k = 0; k < shell_.n_ring(); ++k) {
+    if (!walls->admits_apex(k))
+      continue;
     if (ring_quality(k, worst + swap_gain) > worst + swap_gain &&
         operator_.replace(shell_.all(), shell_.ring[k], {a, b},
                           {mean_floor, swap_gain, 0, hausdorff_number_})) {

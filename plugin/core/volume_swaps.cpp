@@ -76,14 +76,10 @@ bool VolumePasses::is_ring_better(std::size_t apex, double threshold) const {
 }
 
 bool VolumePasses::remove_edge(Index c, Index a, Index b) {
-  if (!shell_of(volume_.mesh, c, a, b, shell_))
+  const auto walls = walls_of_removable(volume_, c, a, b, longest_ring, shell_);
+  if (!walls)
     return false;
   const std::size_t n = shell_.n_ring();
-  if (n < 3 || n > longest_ring)
-    return false;
-  const EdgeWalls walls = walls_at(volume_, shell_);
-  if (!may_vanish(volume_, shell_, walls))
-    return false;
   if (volume_.slab)
     for (std::size_t k = 0; k < n; ++k)
       if (!volume_.is_inside(shell_.ring[k])) {
@@ -94,9 +90,9 @@ bool VolumePasses::remove_edge(Index c, Index a, Index b) {
   for (Index cell : shell_.all())
     worst = std::min(worst, volume_.quality_of(cell));
   for (std::size_t k = 0; k < n; ++k) {
-    if (walls.n == 2 && k != walls.position[0] && k != walls.position[1])
-      continue; // the new facets of the surface must meet at the apex
-    if (!is_ring_better(k, worst + swap_gain))
+    if (!walls->admits_apex(k))
+      continue;
+    if (!is_ring_better(k, better_by(swap_gain, worst)))
       continue;
     if (operator_.replace(shell_.all(), shell_.ring[k], {a, b},
                           improvement(swap_gain, hausdorff_number_)))

@@ -46,12 +46,15 @@ def solve_poisson(mesh, fields):
 
 
 def main(complexities=COMPLEXITIES, picture=None):
-    """Print the error against the unknowns and the observed order, and draw the second mesh."""
+    """Print the errors on uniform and adapted meshes, and draw the second adapted mesh."""
     first = from_skfem(MeshTri().refined(4))
-    study = anistar.convergence_study(solve_poisson, first, complexities, exact=exact)
-    for row in study.table:
-        print(f"{row.points:6d} unknowns, L2 error {row.error:.3e}")
-    print(f"observed order {study.order:.2f}")
+    study = anistar.convergence_study(
+        solve_poisson, first, complexities, exact=exact, baselines=("uniform",)
+    )
+    for kind, curve in study.curves().items():
+        for unknowns, error in curve:
+            print(f"{kind} {unknowns:7d} unknowns, L2 error {error:.3e}")
+    print(f"observed order on adapted meshes {study.order:.2f}")
     if picture:
         mesh_picture(picture, study.steps[1].mesh)
     return study

@@ -75,17 +75,15 @@ def turn(mesh, angle):
     return anistar.Mesh(**{**mesh.arrays(), "points": rotated(mesh.points, angle)})
 
 
-def main(n_transfers=50, size=0.02, picture=None):
-    """Turn the cone once; return a history for each method."""
-    # As many sides as transfers, or twice as many: turned meshes cover the same polygon.
-    background = disc(n_sides=n_transfers * max(1, 100 // n_transfers), spacing=2 * size)
+def turned_once(mesh_at, n_transfers):
+    """Turn the cone once, on the mesh for each angle; return a history for each method."""
     step = 2 * np.pi / n_transfers
-    mesh = adapted(background, 0.0, size)
+    mesh = mesh_at(0.0)
     values = {method: cone(mesh.points, 0.0) for method in METHODS}
     histories = {method: History([], [], [], []) for method in METHODS}
     for k in range(n_transfers + 1):
         if k:
-            moved, mesh = turn(mesh, step), adapted(background, k * step, size)
+            moved, mesh = turn(mesh, step), mesh_at(k * step)
             values = {
                 method: anistar.transfer(
                     moved, {"u": u}, mesh, method=method, outside="nearest"
@@ -98,6 +96,14 @@ def main(n_transfers=50, size=0.02, picture=None):
             history.maximum.append(float(u.max()))
             history.minimum.append(float(u.min()))
             history.error.append(l2_error(mesh, u, lambda x, angle=k * step: cone(x, angle)))
+    return histories
+
+
+def main(n_transfers=50, size=0.02, picture=None):
+    """Turn the cone once on adapted meshes; return a history for each method."""
+    # As many sides as transfers, or twice as many: turned meshes cover the same polygon.
+    background = disc(n_sides=n_transfers * max(1, 100 // n_transfers), spacing=2 * size)
+    histories = turned_once(lambda angle: adapted(background, angle, size), n_transfers)
     if picture is not None:
         plot(histories, picture)
     return histories

@@ -13,6 +13,8 @@ from anistar import demo_problem  # noqa: E402
 from anistar.adapters.skfem import from_skfem, to_skfem  # noqa: E402
 from anistar.demo import run_demo, stages  # noqa: E402
 from anistar.formats import read  # noqa: E402
+from anistar.interpolation_error import l2_norm  # noqa: E402
+from anistar.transfer import transfer  # noqa: E402
 from anistar.validation import validate  # noqa: E402
 
 EXAMPLES = Path(__file__).parents[2] / "solver_examples" / "scikit_fem"
@@ -62,10 +64,29 @@ def test_the_advection_diffusion_example_solves_the_problem_of_the_demo(tmp_path
     assert (tmp_path / "heat.vtu").exists()
 
 
+def test_the_advection_diffusion_example_has_a_third_of_the_error_on_half_the_unknowns(tmp_path):
+    example = runpy.run_path(str(EXAMPLES / "advection_diffusion.py"))
+    *_, last, fine = example["main"]((200, 400, 800, 4000), str(tmp_path / "heat.vtu")).steps
+    uniform = demo_problem.channel(0.04)
+    heat = example["solve_heat"](uniform, {})
+
+    def error(mesh, fields):
+        there = transfer(mesh, fields, fine.mesh, outside="nearest").fields["u"]
+        return l2_norm(fine.mesh, there - fine.fields["u"])
+
+    assert fine.mesh.n_points > 2 * uniform.n_points > 4 * last.mesh.n_points
+    assert error(uniform, heat) > 3 * error(last.mesh, last.fields)
+
+
 def test_the_poisson_example_converges_at_second_order():
     study = runpy.run_path(str(EXAMPLES / "poisson.py"))["main"]((250, 500, 1000))
     assert study.order == pytest.approx(2.0, abs=0.35)
     assert validate(study.steps[-1].mesh) == []
+    # A fifth of the error on half the unknowns, and a tenth at the same complexity.
+    (*_, second, third), (*_, uniform) = study.table, study.baselines["uniform"]
+    assert uniform.points > 1.8 * second.points
+    assert uniform.error > 5 * second.error
+    assert uniform.error > 9 * third.error
 
 
 def test_a_mesh_goes_to_scikit_fem_and_back_with_its_names():

@@ -26,6 +26,23 @@ def test_a_cone_that_turns_keeps_its_mass_and_its_bounds(tmp_path):
     assert last["bounded"] < 0.5 * last["interpolate"]
 
 
+def test_adapted_meshes_carry_a_cone_at_half_the_error_of_a_uniform_one():
+    background, uniform = EXAMPLE["disc"](100, 0.1), EXAMPLE["disc"](100, 0.075)
+    assert validate(uniform) == []
+    meshes = []
+
+    def following(angle):
+        meshes.append(EXAMPLE["adapted"](background, angle, 0.05))
+        return meshes[-1]
+
+    on_adapted = EXAMPLE["turned_once"](following, 10)
+    on_uniform = EXAMPLE["turned_once"](lambda angle: uniform, 10)
+    assert [validate(mesh) for mesh in meshes] == [[]] * 11
+    assert max(mesh.n_points for mesh in meshes) < uniform.n_points
+    for method in ("conservative", "bounded"):
+        assert on_uniform[method].error[-1] > 1.8 * on_adapted[method].error[-1]
+
+
 def test_the_meshes_of_the_example_are_valid():
     background = EXAMPLE["disc"](40, 0.1)
     mesh = EXAMPLE["adapted"](background, 0.5, 0.05)

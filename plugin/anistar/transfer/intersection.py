@@ -152,8 +152,7 @@ def supermesh(
         callback=callback,
     )
     starts, columns, volumes = made["pairs"]
-    shape = (target.n_cells, source.n_cells)
-    width = source.dim + 1
+    shape, width = (target.n_cells, source.n_cells), source.dim + 1
     block_shape = (shape[0] * width, shape[1] * width)
     return Supermesh(
         source=source,

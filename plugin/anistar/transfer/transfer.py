@@ -101,10 +101,15 @@ def transfer(
         if options.method == "interpolate"
         else _projected(source, checked, target, options)
     )
-    seen = done.seen
-    if seen is None and options.wants_l2_difference:
+    seen, wanted = done.seen, options.wants_l2_difference
+    if seen is None and wanted:
         seen = overlapped(source, checked, target, options)
-    wanted = options.wants_l2_difference
+
+    def change_of(name: str) -> FieldChange:
+        carried = done.fields[name]
+        difference = _l2_difference(seen, name, carried) if wanted else None
+        return _change(source, checked[name], target, carried, regions, difference)
+
     report = TransferReport(
         method=options.method,
         outside=options.outside,
@@ -113,18 +118,7 @@ def transfer(
         coverage=seen.overlap.coverage() if seen is not None else None,
         regions=regions.tags,
         unmatched_tags=regions.unmatched,
-        changes={
-            name: _change(
-                source,
-                field,
-                target,
-                done.fields[name],
-                regions,
-                _l2_difference(seen, name, done.fields[name]) if wanted else None,
-            )
-            for name, field in checked.items()
-            if field.kind != "label"
-        },
+        changes={n: change_of(n) for n, field in checked.items() if field.kind != "label"},
         seconds=time.perf_counter() - started,
     )
     return Transferred(_as_given(fields, done.fields), report)

@@ -121,8 +121,11 @@ bool meets_ball(const Array2<double> &metric, const Array2<double> &simplex,
   for (std::size_t k = 0; k < d; ++k) {
     corners[k] = &y[k];
     powers[k] = ball.power(y[k]);
-    if (ball.side(y[k], powers[k]) == Side::inside)
+    const Side side = ball.side(y[k], powers[k]);
+    if (side == Side::inside)
       return true;
+    if (side == Side::boundary)
+      powers[k] = {};
   }
   return ball.meets(corners, powers);
 }

@@ -1,11 +1,31 @@
 #include "report.h"
 
+#include "geometry.h"
+
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <span>
 
 namespace anistar::bindings {
+namespace {
+
+/// Points (n, d) and full tensors (n, d, d) of vertices.
+template <std::size_t d>
+void put_vertices(nb::dict &out, const std::vector<Vertex<d>> &vertices) {
+  std::vector<double> points, metric;
+  points.reserve(vertices.size() * d);
+  metric.reserve(vertices.size() * d * d);
+  for (const Vertex<d> &v : vertices) {
+    points.insert(points.end(), v.x.data(), v.x.data() + d);
+    for (std::size_t i = 0; i < d; ++i)
+      for (std::size_t j = 0; j < d; ++j)
+        metric.push_back(v.M(i, j));
+  }
+  out["points"] = owned(std::move(points), {vertices.size(), d});
+  out["metric"] = owned(std::move(metric), {vertices.size(), d, d});
+}
 
 nb::dict as_dict(const Statistics &statistics) {
   const std::span bins(Statistics::length_bins);
@@ -32,30 +52,45 @@ nb::dict as_dict(const DistortionQuantiles &quantiles) {
   return out;
 }
 
-AgreementMode agreement_mode(const std::string &name) {
-  if (name == "off")
-    return AgreementMode::off;
-  if (name == "auto")
-    return AgreementMode::when_possible;
-  if (name == "on")
-    return AgreementMode::on;
-  throw std::invalid_argument("unknown agreement mode '" + name + "'");
+nb::dict as_dict(const ConsistencyCounts &counts) {
+  nb::dict out;
+  out["size"] = counts.size;
+  out["radius_edge"] = counts.radius_edge;
+  out["sliver"] = counts.sliver;
+  out["inconsistency"] = counts.inconsistency;
+  out["boundary"] = counts.boundary;
+  out["rounds"] = counts.rounds;
+  out["stop_reason"] = counts.stop;
+  return out;
 }
 
-void put_certified(nb::dict &result, bool was_checked, double simplex_ok,
-                   double star_ok) {
-  result["simplex_ok"] = was_checked ? nb::object(nb::float_(simplex_ok)) : nb::none();
-  result["star_ok"] = was_checked ? nb::object(nb::float_(star_ok)) : nb::none();
+/// None when the certificate was not asked.
+nb::object certified_fraction(bool was_checked, double value) {
+  return was_checked ? nb::object(nb::float_(value)) : nb::none();
 }
 
-Monitor::Progress progress_of(nb::handle callback) {
-  return [callback](const std::string &phase, double fraction) {
-    nb::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0)
-      throw nb::python_error();
-    if (!callback.is_none())
-      callback(phase, fraction);
-  };
+} // namespace
+
+template <std::size_t d> nb::dict as_dict(const RemeshResult<d> &result) {
+  nb::dict out;
+  put_vertices<d>(out, result.vertices);
+  out["cells"] = rows<Index, d + 1>(result.cells);
+  out["cell_tags"] = owned(std::vector(result.cell_tags), {result.cells.size()});
+  out["facets"] = rows<Index, d>(result.facets);
+  out["facet_tags"] = owned(std::vector(result.facet_tags), {result.facets.size()});
+  out["simplex_ok"] = certified_fraction(result.was_checked, result.simplex_ok);
+  out["star_ok"] = certified_fraction(result.was_checked, result.star_ok);
+  out["agreement"] = result.agreement;
+  out["consistency"] = as_dict(result.consistency);
+  out["distortion"] = as_dict(result.distortion);
+  out["statistics"] = as_dict(result.statistics);
+  out["counts"] = result.counts;
+  out["seconds"] = result.seconds;
+  out["stop_reason"] = name_of(result.reason);
+  return out;
 }
+
+template nb::dict as_dict(const RemeshResult<2> &);
+template nb::dict as_dict(const RemeshResult<3> &);
 
 } // namespace anistar::bindings

@@ -1,10 +1,9 @@
 #include "../volume_remesh.h"
 #include "bind.h"
-#include "consistency.h"
 #include "geometry.h"
 #include "report.h"
+#include "settings.h"
 
-#include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
@@ -38,10 +37,8 @@ remesh3(const Array2<double> &points, const Array2<Index> &cells,
         const Array3<double> &metric, const Array2<double> &geometry_points,
         const Array2<Index> &geometry_facets, const Array1<Index> &geometry_facet_tags,
         const Array2<Index> &geometry_edges, const Array1<Index> &geometry_edge_tags,
-        const Array1<Index> &frozen_tags, double ridge_angle, double hausdorff_number,
-        std::size_t max_vertices, double max_seconds, const std::string &agreement,
-        const std::string &consistency, const nb::dict &parameters, std::uint64_t seed,
-        int threads, const nb::object &project, const nb::object &callback) {
+        const Array1<Index> &frozen_tags, double ridge_angle, const nb::dict &settings,
+        const nb::object &project, const nb::object &callback) {
   const auto tensors = tensors_of<3>(metric);
   const VolumeInput input{cells_of<3>(cells),
                           indices_of(cell_tags),
@@ -54,37 +51,17 @@ remesh3(const Array2<double> &points, const Array2<Index> &cells,
       indices_of(geometry_facet_tags), edges_of(geometry_edges),
       indices_of(geometry_edge_tags),  {},
       indices_of(frozen_tags),         ridge_angle};
-  const VolumeSettings settings{hausdorff_number,
-                                max_vertices,
-                                max_seconds,
-                                agreement_mode(agreement),
-                                seed,
-                                threads,
-                                consistency_mode(consistency),
-                                parameters_of(parameters)};
+  const RemeshSettings chosen = settings_of(settings);
   const SurfaceProjection projection = surface_projection_of(project);
   VolumeResult out;
   {
     nb::gil_scoped_release release;
-    out = remesh_volume(input, tensors, geometry, projection, settings,
+    out = remesh_volume(input, tensors, geometry, projection, chosen,
                         progress_of(callback));
   }
-  nb::dict result;
-  put_vertices<3>(result, out.vertices);
-  result["cells"] = rows<Index, 4>(out.cells);
-  result["cell_tags"] = owned(std::move(out.cell_tags), {out.cells.size()});
-  result["facets"] = rows<Index, 3>(out.facets);
-  result["facet_tags"] = owned(std::move(out.facet_tags), {out.facets.size()});
+  nb::dict result = as_dict<3>(out);
   result["edges"] = rows<Index, 2>(out.edges);
   result["edge_tags"] = owned(std::move(out.edge_tags), {out.edges.size()});
-  result["agreement"] = out.agreement;
-  result["consistency"] = consistency_dict(out.consistency);
-  put_certified(result, out.was_checked, out.simplex_ok, out.star_ok);
-  result["statistics"] = as_dict(out.statistics);
-  result["distortion"] = as_dict(out.distortion);
-  result["counts"] = out.counts;
-  result["seconds"] = out.seconds;
-  result["stop_reason"] = name_of(out.reason);
   return result;
 }
 
@@ -100,10 +77,8 @@ void bind_volume_remesh(nb::module_ &module) {
       nb::arg("geometry_facets").noconvert(),
       nb::arg("geometry_facet_tags").noconvert(), nb::arg("geometry_edges").noconvert(),
       nb::arg("geometry_edge_tags").noconvert(), nb::arg("frozen_tags").noconvert(),
-      nb::arg("ridge_angle"), nb::arg("hausdorff_number"), nb::arg("max_vertices"),
-      nb::arg("max_seconds"), nb::arg("agreement"), nb::arg("consistency"),
-      nb::arg("parameters"), nb::arg("seed"), nb::arg("threads"),
-      nb::arg("project").none(), nb::arg("callback").none(),
+      nb::arg("ridge_angle"), nb::arg("settings"), nb::arg("project").none(),
+      nb::arg("callback").none(),
       "A tetrahedral mesh with unit edges in the metric given at its points.");
 }
 

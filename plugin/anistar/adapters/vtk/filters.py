@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
@@ -17,6 +17,9 @@ from ...transfer import transfer
 from .grids import from_vtk, to_vtk
 
 METRIC = "metric"
+
+MeshAndFields = tuple[Mesh, dict[str, Field]]
+Make = Callable[[Mesh, dict[str, Field]], MeshAndFields]
 
 
 class _AnistarFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]  # VTK has no types
@@ -53,22 +56,19 @@ class _AnistarFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]  # VTK has n
         self._fields = names
         self.Modified()
 
-    def RequestData(self, request: Any, inputs: Any, outputs: Any) -> int:  # noqa: N802
-        """Run the filter; VTK shows the exception of one that fails, and its output is empty."""
+    def _run(self, make: Make, inputs: Any, outputs: Any) -> int:
+        """Fill the output; VTK shows the exception of a failure, and the output is empty then."""
         self.error = None
         grid = vtkUnstructuredGrid.GetData(inputs[0], 0)
         output = vtkUnstructuredGrid.GetData(outputs, 0)
         try:
             mesh, fields = from_vtk(grid)
-            output.ShallowCopy(to_vtk(*self._made(mesh, fields)))
+            output.ShallowCopy(to_vtk(*make(mesh, fields)))
         except Exception as error:
             self.error = str(error)
             output.Initialize()
             raise
         return 1
-
-    def _made(self, mesh: Mesh, fields: Mapping[str, Field]) -> tuple[Mesh, dict[str, Field]]:
-        raise NotImplementedError
 
     def _adapt_options(self) -> AdaptOptions:
         names = {"metric_fields": self._fields} if self._fields else {}
@@ -92,7 +92,11 @@ class vtkAnistarMetric(_AnistarFilter):  # noqa: N801
     Nine components a point, row by row; `set_options` takes those of `MetricOptions`.
     """
 
-    def _made(self, mesh: Mesh, fields: Mapping[str, Field]) -> tuple[Mesh, dict[str, Field]]:
+    def RequestData(self, request: Any, inputs: Any, outputs: Any) -> int:  # noqa: N802
+        """Make the metric when VTK asks for the output."""
+        return self._run(self._with_metric, inputs, outputs)
+
+    def _with_metric(self, mesh: Mesh, fields: Mapping[str, Field]) -> MeshAndFields:
         options = self._adapt_options().metric
         metric, _ = from_fields(mesh, _arrays(self._metric_sources(fields)), options)
         return mesh, {**fields, METRIC: Field(metric)}
@@ -106,7 +110,11 @@ class vtkAnistarAdapt(_AnistarFilter):  # noqa: N801
     `set_options` takes the options of every stage of an adaptation.
     """
 
-    def _made(self, mesh: Mesh, fields: Mapping[str, Field]) -> tuple[Mesh, dict[str, Field]]:
+    def RequestData(self, request: Any, inputs: Any, outputs: Any) -> int:  # noqa: N802
+        """Adapt the grid when VTK asks for the output."""
+        return self._run(self._adapted, inputs, outputs)
+
+    def _adapted(self, mesh: Mesh, fields: Mapping[str, Field]) -> MeshAndFields:
         options = self._adapt_options()
         given = fields.get(METRIC)
         if given is None or given.kind != "tensor":
