@@ -18,14 +18,16 @@ SMALLEST_SIZE, LARGEST_SIZE = 1e-30, 1e40
 MOST_CELLS = 2.0**29
 
 
-def check_sizes(mesh: Mesh, metric: NDArray[np.float64]) -> None:
+def check_sizes(mesh: Mesh, metric: NDArray[np.float64], scale: float) -> None:
     """Raise if a metric asks for edges that are out of the range of double precision.
 
     Parameters
     ----------
     mesh : Mesh
     metric : (n, 3, 3) float64
-        Positive definite.
+        Positive definite, in scaled coordinates.
+    scale : float
+        That of the coordinates: the mesh itself is not scaled.
 
     Raises
     ------
@@ -33,7 +35,7 @@ def check_sizes(mesh: Mesh, metric: NDArray[np.float64]) -> None:
         If the length of an edge along a coordinate axis is not in [1e-30, 1e40] times the
         extent of the mesh; the point is named.
     """
-    extent = float(np.ptp(mesh.points, axis=0).max())
+    extent = scale * float(np.ptp(mesh.points, axis=0).max())
     sizes = 1.0 / np.sqrt(np.einsum("nii->ni", metric)) / extent
     bad = np.flatnonzero(((sizes < SMALLEST_SIZE) | (sizes > LARGEST_SIZE)).any(axis=1))
     if bad.size:
@@ -45,21 +47,21 @@ def check_sizes(mesh: Mesh, metric: NDArray[np.float64]) -> None:
         )
 
 
-def check_count(mesh: Mesh, metric: NDArray[np.float64]) -> None:
-    """Raise if a metric asks for more cells than can be numbered.
+def check_count(mesh: Mesh, metric: NDArray[np.float64], scale: float) -> None:
+    """Raise if a metric in scaled coordinates asks for more cells than can be numbered.
 
     Raises
     ------
     MeshingError
         If the complexity of the metric is that of a mesh with more than 2**29 cells.
     """
-    box = float(np.ptp(mesh.points, axis=0).prod())
+    box = float((scale * np.ptp(mesh.points, axis=0)).prod())
     # the product of the diagonal bounds the determinant (Hadamard)
     densest = float(np.sqrt(np.einsum("nii->ni", metric).prod(axis=1).max()))
     per_complexity = REAL_ELEMENTS_PER_COMPLEXITY[3]
     if per_complexity * densest * box <= MOST_CELLS:
         return
-    n_cells = per_complexity * complexity(mesh, metric)
+    n_cells = per_complexity * complexity(mesh, metric) * scale**3
     if not n_cells <= MOST_CELLS:
         raise MeshingError(
             f"the metric asks for about {n_cells:.1e} cells, more than the {MOST_CELLS:.1e} that "

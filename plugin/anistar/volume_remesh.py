@@ -67,9 +67,9 @@ def remesh_volume(
     """
     if options.until_consistent == "pure":
         raise ValueError('until_consistent="pure" exists in 2D only: use until_consistent=True')
-    check_sizes(mesh, metric)
+    check_sizes(mesh, metric, scale)
     if options.max_vertices is None and options.max_seconds is None:
-        check_count(mesh, metric)
+        check_count(mesh, metric, scale)
     raw: dict[str, Any] = _core.remesh3(
         mesh.points * scale,
         mesh.cells,

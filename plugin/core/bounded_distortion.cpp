@@ -24,30 +24,37 @@ template <std::size_t d> std::vector<Vector<d>> directions() {
   return out;
 }
 
+/// Whether no two of the metrics at a vertex and around it, at half a distance and the
+/// whole of it, differ by more than gamma_0.
+template <std::size_t d>
+bool varies_little(const Background<d> &background, const Vertex<d> &at, Index cell,
+                   const SymmetricTensor<d> &root, double distance, double gamma_0) {
+  static const std::vector<Vector<d>> around = directions<d>();
+  std::vector<SymmetricTensor<d>> samples{at.M};
+  for (double r : {distance, .5 * distance})
+    for (const Vector<d> &direction : around) {
+      Index hint = cell;
+      const SymmetricTensor<d> M =
+          background.metric(at.x + product<d>(root, Vector<d>(r * direction)), hint);
+      for (const SymmetricTensor<d> &other : samples)
+        if (distortion(M, other) > gamma_0)
+          return false;
+      samples.push_back(M);
+    }
+  return true;
+}
+
 } // namespace
 
 template <std::size_t d>
 double bounded_distortion_radius(const Background<d> &background, const Vertex<d> &at,
                                  Index cell, double gamma_0) {
   constexpr double largest = 2, smallest = .05, ratio = .8;
-  const std::vector<Vector<d>> around = directions<d>();
   const SymmetricTensor<d> root =
       matrix_function(at.M, [](double x) { return 1 / std::sqrt(x); });
-  for (double l = largest; l > smallest; l *= ratio) {
-    std::vector<SymmetricTensor<d>> samples{at.M};
-    for (double r : {.5 * l, l})
-      for (const Vector<d> &direction : around) {
-        Index hint = cell;
-        samples.push_back(
-            background.metric(at.x + product<d>(root, Vector<d>(r * direction)), hint));
-      }
-    double worst = 1;
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        worst = std::max(worst, distortion(samples[i], samples[j]));
-    if (worst <= gamma_0)
+  for (double l = largest; l > smallest; l *= ratio)
+    if (varies_little(background, at, cell, root, l, gamma_0))
       return l;
-  }
   return smallest;
 }
 

@@ -42,7 +42,9 @@ def in_circle(M, triangle, points):
         det += (left - right) * squares[:, i]
         size += (abs(left) + abs(right)) * sizes[:, i]
     signs = np.sign(det).astype(int)
-    for k in np.flatnonzero(abs(det) <= DOUBTFUL * size):
+    is_corner = (u == 0).all(axis=2).any(axis=1)
+    signs[is_corner] = 0
+    for k in np.flatnonzero((abs(det) <= DOUBTFUL * size) & ~is_corner):
         signs[k] = exact_in_circle(M, triangle, points[k])
     return signs
 

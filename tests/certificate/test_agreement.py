@@ -120,8 +120,13 @@ def test_a_distortion_bound_adds_vertices_by_the_size_rule():
     bounded = remesh(
         mesh,
         M,
-        RemeshOptions(until_consistent="pure", consistency=ConsistencyOptions(gamma_0=1.2)),
+        RemeshOptions(
+            until_consistent="pure",
+            max_vertices=free.report.n_points + 200,
+            consistency=ConsistencyOptions(gamma_0=1.5),
+        ),
     )
+    assert anistar.validate(bounded.mesh, mesh) == []
     assert bounded.report.consistency["size"] > free.report.consistency["size"]
     assert bounded.mesh.n_points > free.mesh.n_points
 

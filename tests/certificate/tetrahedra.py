@@ -54,7 +54,9 @@ def in_sphere(M, tetrahedron, points):
     size = np.einsum("kni,ij,knj->kn", abs(u), abs(M), abs(u)).max(axis=1)
     size *= abs(u).max(axis=(1, 2)) ** 3
     signs = np.sign(det).astype(int)
-    for k in np.flatnonzero(abs(det) <= DOUBTFUL * size):
+    is_corner = (u == 0).all(axis=2).any(axis=1)
+    signs[is_corner] = 0
+    for k in np.flatnonzero((abs(det) <= DOUBTFUL * size) & ~is_corner):
         signs[k] = exact_in_sphere(M, tetrahedron, points[k])
     return signs
 
