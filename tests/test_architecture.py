@@ -118,10 +118,15 @@ def test_only_adapters_and_the_demo_problem_import_adapters():
 
 
 def test_modules_import_each_other_without_circles():
-    left = {name: {module_of(other) for other in ALL[name]} - {name, None} for name in ALL}
+    assert in_circles({name: {module_of(other) for other in ALL[name]} for name in ALL}) == set()
+
+
+def in_circles(graph):
+    """Nodes that reach themselves by way of others, or reach such nodes."""
+    left = {name: others & graph.keys() - {name} for name, others in graph.items()}
     while free := {name for name, others in left.items() if not others}:
         left = {name: others - free for name, others in left.items() if name not in free}
-    assert left == {}
+    return set(left)
 
 
 def module_of(name):
@@ -178,3 +183,18 @@ def test_cgal_stays_in_source_files_of_the_core():
     found = including("CGAL/")
     assert [str(path) for path in found if path.suffix != ".cpp"] == []
     assert [str(path) for path in found if path.parts[0] == "bindings"] == []
+
+
+def included():
+    """What each concept of the core, a header with its source, includes."""
+    found = {}
+    for path in [*CORE.rglob("*.cpp"), *CORE.rglob("*.h")]:
+        names = re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE)
+        places = [folder / name for name in names for folder in (path.parent, CORE)]
+        concepts = {place.resolve().with_suffix("") for place in places if place.exists()}
+        found.setdefault(path.with_suffix(""), set()).update(concepts)
+    return found
+
+
+def test_concepts_of_the_core_include_each_other_without_circles():
+    assert in_circles(included()) == set()
