@@ -10,20 +10,17 @@ crossings and contacts, and then at one facet of every boundary component.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
+from . import _core
 from .topology import Bool, Float, Int, Long, RowKeys, facet_normals
 
 # A point this close to a facet, relative to the facet's size, touches it: a hundred times the
 # round-off of the tests below, far below any gap that a double can resolve usefully.
 CONTACT = 1e-12
-# Facets handled at a time when candidate pairs are listed; bounds the memory.
-CHUNK = 4096
 
 
 def coincident_points(points: Float, facets: Int) -> tuple[int, int] | None:
@@ -41,25 +38,25 @@ def coincident_points(points: Float, facets: Int) -> tuple[int, int] | None:
 
 def touching_point(points: Float, facets: Int) -> tuple[int, int] | None:
     """Return a point and the row of a facet that it lies on without being its vertex."""
-    for pair in _close_pairs(points, facets):
-        for first, second in (pair, pair[::-1]):
-            for column in range(facets.shape[1]):
-                vertex = facets[second, column]
-                hit = _lies_on(points, facets[first], vertex)
-                if hit.any():
-                    at = int(np.argmax(hit))
-                    return int(vertex[at]), int(first[at])
+    pair = _close_pairs(points, facets)
+    for first, second in (pair, pair[::-1]):
+        for column in range(facets.shape[1]):
+            vertex = facets[second, column]
+            hit = _lies_on(points, facets[first], vertex)
+            if hit.any():
+                at = int(np.argmax(hit))
+                return int(vertex[at]), int(first[at])
     return None
 
 
 def crossing_facets(points: Float, facets: Int) -> tuple[int, int] | None:
     """Return the rows of two facets that cross each other, if there are any."""
-    for pair in _close_pairs(points, facets):
-        for first, second in (pair, pair[::-1]):
-            hit = _cross(points, facets[first], facets[second])
-            if hit.any():
-                at = int(np.argmax(hit))
-                return int(first[at]), int(second[at])
+    pair = _close_pairs(points, facets)
+    for first, second in (pair, pair[::-1]):
+        hit = _cross(points, facets[first], facets[second])
+        if hit.any():
+            at = int(np.argmax(hit))
+            return int(first[at]), int(second[at])
     return None
 
 
@@ -103,32 +100,11 @@ def _winding(corners: Float) -> float:
     return float(2 * np.arctan2(top, bottom).sum() / (4 * np.pi))
 
 
-def _close_pairs(points: Float, facets: Int) -> Iterator[tuple[Long, Long]]:
-    """Yield (first, second) rows of facets whose bounding balls and boxes meet, each pair once.
-
-    Facets are taken by size class, each against its own and the smaller ones, so that a graded
-    boundary does not make every small facet meet the search radius of the largest.
-    """
-    corners = points[facets]
-    centres = corners.mean(axis=1)
-    radii = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
-    margin = CONTACT * radii[:, None]
-    low, high = corners.min(axis=1) - margin, corners.max(axis=1) + margin
-    classes = np.floor(np.log2(radii)).astype(np.int64)
-    for size in np.unique(classes):
-        smaller = np.flatnonzero(classes <= size)
-        tree = KDTree(centres[smaller])
-        members = np.flatnonzero(classes == size)
-        for start in range(0, len(members), CHUNK):
-            chunk = members[start : start + CHUNK]
-            found = KDTree(centres[chunk]).sparse_distance_matrix(
-                tree, 2.0 ** (size + 2) * (1 + CONTACT), output_type="ndarray"
-            )
-            first, second = chunk[found["i"]], smaller[found["j"]]
-            keep = (classes[second] < size) | (first < second)
-            first, second = first[keep], second[keep]
-            meet = np.all((low[first] <= high[second]) & (low[second] <= high[first]), axis=1)
-            yield first[meet], second[meet]
+def _close_pairs(points: Float, facets: Int) -> tuple[Long, Long]:
+    """Return (first, second) rows of facets that may meet, each pair once."""
+    close = _core.close_facets2 if points.shape[1] == 2 else _core.close_facets3
+    pairs = close(np.ascontiguousarray(points), np.ascontiguousarray(facets, np.int32), CONTACT)
+    return pairs[:, 0].astype(np.int64), pairs[:, 1].astype(np.int64)
 
 
 def _lies_on(points: Float, facets: Int, vertices: Int) -> Bool:

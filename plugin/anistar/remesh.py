@@ -63,7 +63,8 @@ def remesh(
         first mesh, so that curved boundaries do not drift. In 3D the facets, ridges and corners
         are those of `mesh`, and the geometry gives the shape of the curved ones.
     project : callable, optional
-        ``project(points, facet_tag)`` moves new points on curves onto the true geometry.
+        ``project(points, facet_tag)`` moves new points of curves, in 3D of curved surfaces, onto
+        the true geometry. In 3D ridges keep to the curve through the points of the geometry.
 
     Returns
     -------
@@ -91,8 +92,11 @@ def remesh(
     _check_frozen(options.frozen_tags, geometry)
     scale = _unit_scale(mesh.points)
     call = _call_core if mesh.dim == 2 else remesh_volume
+    metric /= scale**2  # a copy, as check_metric returns it
     raw = call(mesh, metric, geometry, project, options, scale)
-    points = raw["points"] / scale
+    points, metric = raw["points"], raw["metric"]
+    points /= scale
+    metric *= scale**2
     kept = geometry if mesh.dim == 2 else mesh
     ridges = {name: raw[name] for name in ("edges", "edge_tags") if name in raw}
     new = Mesh._trusted(
@@ -108,7 +112,7 @@ def remesh(
     report = report_of(raw, geometry, new, has_ridges=len(mesh.edges) > 0)
     if mesh.dim == 3 and report.counts["curved"]:
         check_surfaces(new, report)
-    return Remeshed(new, raw["metric"] * scale**2, report)
+    return Remeshed(new, metric, report)
 
 
 def _unit_scale(points: Float) -> float:
@@ -129,12 +133,12 @@ def _call_core(
     options: RemeshOptions,
     scale: float,
 ) -> dict[str, Any]:
-    """Remesh in scaled coordinates; points and metric come back scaled."""
+    """Remesh in scaled coordinates, as the metric is already; what comes back is scaled."""
     try:
         return _core.remesh2(
             mesh.points * scale,
             mesh.cells,
-            metric / scale**2,
+            metric,
             geometry.points * scale,
             geometry.cells,
             geometry.cell_tags,

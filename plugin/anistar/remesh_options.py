@@ -44,8 +44,7 @@ class RemeshOptions:
     seed : int
         Of the random moves in the agreement phase.
     threads : int
-        That work on the mesh side by side, from some thousand vertices on; the result
-        does not depend on it, to the last bit.
+        That work on the mesh side by side; the result does not depend on it, to the last bit.
     hausdorff_number : float
         Distance of a curve or curved surface from an edge along it, relative to the edge's
         length; longer edges are split whatever the metric says.

@@ -43,23 +43,20 @@ class RowKeys:
         self._n = max(n_points, 1)
         self._pairs: Long | None = None
         if rows.shape[1] == 3 and self._n**3 >= 2**63:
-            ordered = np.sort(rows, axis=1).astype(np.int64)
-            self._pairs = np.unique(ordered[:, 0] * self._n + ordered[:, 1])
+            self._pairs = np.unique(_horner(np.sort(rows, axis=1)[:, :2], self._n))
 
     def encode(self, rows: Int) -> Long:
         """Return the keys of `rows`; -1 where the row cannot be one of the known rows."""
-        ordered = np.sort(rows, axis=1).astype(np.int64)
-        if ordered.shape[1] < 3:
-            return _horner(ordered, self._n)
+        ordered = np.sort(rows, axis=1)
         if self._pairs is None:
             return _horner(ordered, self._n)
-        pair = ordered[:, 0] * self._n + ordered[:, 1]
+        pair = _horner(ordered[:, :2], self._n)
         rank = np.searchsorted(self._pairs, pair).clip(max=len(self._pairs) - 1)
         return np.where(self._pairs[rank] == pair, rank * self._n + ordered[:, 2], -1)
 
 
-def _horner(ordered: Long, base: int) -> Long:
-    key = ordered[:, 0].copy()
+def _horner(ordered: Int, base: int) -> Long:
+    key = ordered[:, 0].astype(np.int64)
     for column in range(1, ordered.shape[1]):
         key *= base
         key += ordered[:, column]
@@ -131,6 +128,7 @@ def facet_table(cells: Int, n_points: int) -> FacetTable:
     keys = encoder.encode(rows)
     order = np.argsort(keys, kind="stable")
     ordered = keys[order]
+    del keys  # as large as the cells
     starts = np.flatnonzero(np.r_[True, ordered[1:] != ordered[:-1]][: len(ordered)])
     counts = np.diff(np.r_[starts, len(ordered)])
     sides = np.full((len(starts), 2), -1, dtype=np.int64)
@@ -177,7 +175,7 @@ def unique_edges(simplices: Int, n_points: int) -> Int:
     pairs = np.concatenate(
         [simplices[:, [i, j]] for i, j in itertools.combinations(range(simplices.shape[1]), 2)]
     )
-    keys = np.unique(_horner(np.sort(pairs, axis=1).astype(np.int64), max(n_points, 1)))
+    keys = np.unique(_horner(np.sort(pairs, axis=1), max(n_points, 1)))
     return np.stack(np.divmod(keys, max(n_points, 1)), axis=1).astype(np.int32)
 
 

@@ -10,25 +10,34 @@ from numpy.typing import NDArray
 from . import _core
 from .errors import MeshingError
 from .mesh import Mesh
-from .overlap import crossing_facets
+from .overlap import crossing_facets, touching_point
 from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport
+from .volume_demand import check_count, check_sizes
 
 
 def check_surfaces(mesh: Mesh, report: RemeshReport) -> None:
-    """Raise MeshingError if facets of a new mesh with curved surfaces cross.
+    """Raise MeshingError if facets of a new mesh with curved surfaces cross or touch.
 
     The mesher looks at the cells around each operation; sheets that come together across a gap
     outside of the domain are seen only here.
     """
     crossing = crossing_facets(mesh.points, mesh.facets)
-    if crossing is None:
-        return
-    x, y, z = mesh.points[mesh.facets[crossing[0]]].mean(axis=0)
-    tags = tuple(mesh.facet_tags[list(crossing)].tolist())
+    if crossing is not None:
+        tags = tuple(mesh.facet_tags[list(crossing)].tolist())
+        what = f"facets with tags {tags} cross"
+        place = mesh.points[mesh.facets[crossing[0]]].mean(axis=0)
+    else:
+        touching = touching_point(mesh.points, mesh.facets)
+        if touching is None:
+            return
+        point, facet = touching
+        what = f"a point lies on a facet with tag {mesh.facet_tags[facet]}"
+        place = mesh.points[point]
+    x, y, z = place
     raise MeshingError(
-        f"facets with tags {tags} cross near ({x:g}, {y:g}, {z:g}): curved surfaces come closer "
+        f"{what} near ({x:g}, {y:g}, {z:g}): curved surfaces come closer "
         "to each other there than their sampling resolves; refine the geometry, or lower "
         "ridge_angle if they are not smooth",
         report,
@@ -43,7 +52,7 @@ def remesh_volume(
     options: RemeshOptions,
     scale: float,
 ) -> dict[str, Any]:
-    """Remesh a 3D mesh in scaled coordinates; points and metric come back scaled.
+    """Remesh a 3D mesh in scaled coordinates, as the metric is already; what comes back is scaled.
 
     The mesh itself is changed; the geometry gives the shape of its curved surfaces and ridges.
 
@@ -51,9 +60,16 @@ def remesh_volume(
     ------
     ValueError
         If an option asks for what exists in 2D only.
+    MetricError
+        If the metric asks for lengths out of the range of double precision.
+    MeshingError
+        If it asks for more cells than can be numbered and nothing bounds the run.
     """
     if options.until_consistent == "pure":
         raise ValueError('until_consistent="pure" exists in 2D only: use until_consistent=True')
+    check_sizes(mesh, metric)
+    if options.max_vertices is None and options.max_seconds is None:
+        check_count(mesh, metric)
     raw: dict[str, Any] = _core.remesh3(
         mesh.points * scale,
         mesh.cells,
@@ -63,7 +79,7 @@ def remesh_volume(
         mesh.edges,
         mesh.edge_tags,
         mesh.corners,
-        metric / scale**2,
+        metric,
         geometry.points * scale,
         geometry.facets,
         geometry.facet_tags,

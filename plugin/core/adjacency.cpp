@@ -8,14 +8,16 @@ namespace anistar {
 
 namespace {
 
-/// A half-facet with its vertices but the lowest, in increasing order.
-template <std::size_t d> struct Entry {
-  std::array<Index, d - 1> rest;
-  HalfFacet half;
-};
-
+/// The vertices of a facet in increasing order.
 template <std::size_t d> Facet<d> sorted(Facet<d> facet) {
-  std::sort(facet.begin(), facet.end());
+  if (facet[1] < facet[0])
+    std::swap(facet[0], facet[1]);
+  if constexpr (d == 3) {
+    if (facet[2] < facet[1])
+      std::swap(facet[1], facet[2]);
+    if (facet[1] < facet[0])
+      std::swap(facet[0], facet[1]);
+  }
   return facet;
 }
 
@@ -35,35 +37,39 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
     }
   for (std::size_t v = 0; v < n_points; ++v)
     start[v + 1] += start[v];
-  std::vector<Entry<d>> bucket(cells.size() * (d + 1));
+  std::vector<HalfFacet> halves(cells.size() * (d + 1));
   std::vector<Index> fill(start.begin(), start.end() - 1);
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (std::size_t i = 0; i <= d; ++i) {
-      const Facet<d> facet = sorted<d>(facet_of<d>(cells[c], i));
-      Entry<d> &entry =
-          bucket[static_cast<std::size_t>(fill[static_cast<std::size_t>(facet[0])]++)];
-      std::copy(facet.begin() + 1, facet.end(), entry.rest.begin());
-      entry.half = HalfFacet(static_cast<Index>(c), i);
+      const Facet<d> facet = facet_of<d>(cells[c], i);
+      const auto low =
+          static_cast<std::size_t>(*std::min_element(facet.begin(), facet.end()));
+      halves[static_cast<std::size_t>(fill[low]++)] =
+          HalfFacet(static_cast<Index>(c), i);
     }
   const auto side_of = [&](HalfFacet half) -> HalfFacet & {
     return neighbours[static_cast<std::size_t>(half.cell())][half.facet()];
   };
-  for (std::size_t v = 0; v < n_points; ++v)
-    for (Index p = start[v]; p < start[v + 1]; ++p) {
-      const Entry<d> &one = bucket[static_cast<std::size_t>(p)];
-      for (Index q = p + 1; q < start[v + 1]; ++q) {
-        const Entry<d> &two = bucket[static_cast<std::size_t>(q)];
-        if (two.rest.front() != one.rest.front() || two.rest.back() != one.rest.back())
+  std::vector<Facet<d>> facets; // of the bucket
+  for (std::size_t v = 0; v < n_points; ++v) {
+    const std::span bucket(halves.begin() + start[v], halves.begin() + start[v + 1]);
+    facets.clear();
+    for (HalfFacet half : bucket)
+      facets.push_back(sorted<d>(
+          facet_of<d>(cells[static_cast<std::size_t>(half.cell())], half.facet())));
+    for (std::size_t p = 0; p < bucket.size(); ++p)
+      for (std::size_t q = p + 1; q < bucket.size(); ++q) {
+        if (facets[p] != facets[q])
           continue;
-        HalfFacet &side = side_of(one.half), &other = side_of(two.half);
+        HalfFacet &side = side_of(bucket[p]), &other = side_of(bucket[q]);
         if (side.exists() || other.exists())
           throw std::invalid_argument("a facet of cell " +
-                                      std::to_string(one.half.cell()) +
+                                      std::to_string(bucket[p].cell()) +
                                       " is shared by more than two cells");
-        side = two.half;
-        other = one.half;
+        side = bucket[q];
+        other = bucket[p];
       }
-    }
+  }
   return neighbours;
 }
 

@@ -10,6 +10,12 @@
 
 namespace anistar {
 
+/// What is better than a quality by a gain, or by a tenth of it: where the metric is
+/// far thinner than the domain no cell is good, and small steps up are large ones.
+[[nodiscard]] inline double better_by(double gain, double quality) {
+  return quality + std::min(gain, .1 * quality);
+}
+
 /// What the new cells must be like. The worst of them must reach `floor`, or be better
 /// than the worst old cell by `gain`, whichever asks less: so what is stuck below the
 /// floor can be repaired step by step.
@@ -28,7 +34,7 @@ struct Acceptance {
   bool is_apex_in_place = false;
 
   [[nodiscard]] double threshold(double old_minimum) const {
-    const double least = std::min(floor, old_minimum + gain);
+    const double least = std::min(floor, better_by(gain, old_minimum));
     return share > 0 ? std::min(least, share * old_minimum) : least;
   }
 };

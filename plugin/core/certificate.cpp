@@ -3,8 +3,15 @@
 #include "parallel.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace anistar {
+namespace {
+
+/// What a thread takes at once: some milliseconds.
+constexpr std::size_t cells_at_once = 128;
+
+} // namespace
 
 template <std::size_t d> void DelaunayTest<d>::begin_walk() {
   front_.clear();
@@ -90,41 +97,52 @@ Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
 }
 
 template <std::size_t d> std::uint8_t DelaunayTest<d>::bits(Index cell) {
+  const Cell<d> &vertices = mesh_.cells[static_cast<std::size_t>(cell)];
+  const auto metric = [&](unsigned k) -> const SymmetricTensor<d> & {
+    return mesh_.vertices[static_cast<std::size_t>(vertices[k])].M;
+  };
   unsigned found = 0;
   reach_ = 0;
   for (unsigned k = 0; k <= d; ++k) {
-    const Index v = mesh_.cells[static_cast<std::size_t>(cell)][k];
-    if (violator(cell, mesh_.vertices[static_cast<std::size_t>(v)].M) == none)
+    unsigned same = 0; // the first vertex with this metric
+    while (metric(same).entries != metric(k).entries)
+      ++same;
+    if (same < k ? found >> same & 1 : violator(cell, metric(k)) == none)
       found |= 1u << k;
   }
   return static_cast<std::uint8_t>(found);
 }
 
 template <std::size_t d>
-DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads) {
-  const std::size_t n = mesh.cells.size();
-  DelaunayBits found{std::vector<std::uint8_t>(n, 0), std::vector<std::uint8_t>(n, 0)};
-  parallel_ranges(n, threads, [&](std::size_t begin, std::size_t end) {
-    DelaunayTest<d> test(mesh);
-    for (std::size_t c = begin; c < end; ++c) {
-      found.bits[c] = test.bits(static_cast<Index>(c));
-      found.reach[c] = test.reach();
-    }
+void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> cells, int threads,
+                const Look &look, DelaunayBits &known) {
+  const std::size_t n = cells.size(), n_parts = (n + cells_at_once - 1) / cells_at_once;
+  const auto caller = std::this_thread::get_id();
+  std::atomic<bool> is_going = true;
+  parallel_items(n_parts, threads, [&] {
+    return [&, test = DelaunayTest<d>(mesh)](std::size_t part) mutable {
+      if (std::this_thread::get_id() == caller &&
+          !look(static_cast<double>(part) / static_cast<double>(n_parts)))
+        is_going = false;
+      const std::size_t begin = part * cells_at_once;
+      for (std::size_t k = begin; is_going && k < std::min(n, begin + cells_at_once);
+           ++k) {
+        const auto c = static_cast<std::size_t>(cells[k]);
+        known.bits[c] = test.bits(cells[k]);
+        known.reach[c] = test.reach();
+      }
+    };
   });
-  return found;
 }
 
 template <std::size_t d>
-void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> cells, int threads,
-                DelaunayBits &known) {
-  parallel_ranges(cells.size(), threads, [&](std::size_t begin, std::size_t end) {
-    DelaunayTest<d> test(mesh);
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto c = static_cast<std::size_t>(cells[k]);
-      known.bits[c] = test.bits(cells[k]);
-      known.reach[c] = test.reach();
-    }
-  });
+DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads, const Look &look) {
+  const std::size_t n = mesh.cells.size();
+  DelaunayBits found{std::vector<std::uint8_t>(n, 0), std::vector<std::uint8_t>(n, 0)};
+  std::vector<Index> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  renew_bits(mesh, all, threads, look, found);
+  return found;
 }
 
 template <std::size_t d>
@@ -159,13 +177,15 @@ std::vector<Index> dependent_cells(std::span<const Neighbours<d>> neighbours,
 
 template class DelaunayTest<2>;
 template class DelaunayTest<3>;
-template DelaunayBits delaunay_bits(CertifiedMesh<2>, int);
-template void renew_bits(CertifiedMesh<2>, std::span<const Index>, int, DelaunayBits &);
+template DelaunayBits delaunay_bits(CertifiedMesh<2>, int, const Look &);
+template void renew_bits(CertifiedMesh<2>, std::span<const Index>, int, const Look &,
+                         DelaunayBits &);
 template std::vector<Index> dependent_cells<2>(std::span<const Neighbours<2>>,
                                                std::span<const Index>,
                                                std::span<const std::uint8_t>);
-template DelaunayBits delaunay_bits(CertifiedMesh<3>, int);
-template void renew_bits(CertifiedMesh<3>, std::span<const Index>, int, DelaunayBits &);
+template DelaunayBits delaunay_bits(CertifiedMesh<3>, int, const Look &);
+template void renew_bits(CertifiedMesh<3>, std::span<const Index>, int, const Look &,
+                         DelaunayBits &);
 template std::vector<Index> dependent_cells<3>(std::span<const Neighbours<3>>,
                                                std::span<const Index>,
                                                std::span<const std::uint8_t>);

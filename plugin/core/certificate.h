@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -82,13 +83,18 @@ private:
 struct DelaunayBits {
   std::vector<std::uint8_t> bits, reach;
 };
+/// Hears now and then, on the calling thread, which part is done; what it throws ends
+/// the work, and so does false.
+using Look = std::function<bool(double fraction)>;
+
 template <std::size_t d>
-[[nodiscard]] DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads);
+[[nodiscard]] DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads,
+                                         const Look &look);
 
 /// Decides again for some cells.
 template <std::size_t d>
 void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> cells, int threads,
-                DelaunayBits &known);
+                const Look &look, DelaunayBits &known);
 
 /// The cells whose answer can depend on a changed one: those that looked as far as it.
 /// New cells are changed ones, and have the reach 0.

@@ -10,17 +10,20 @@
 namespace anistar {
 namespace {
 
+constexpr std::size_t cells_between_looks = 1024;
+
 template <std::size_t d> class Certifier {
 public:
   Certifier(std::span<const Vertex<d>> vertices, std::span<const Cell<d>> cells,
-            std::span<const Facet<d>> facets, int threads)
-      : vertices_(vertices), cells_(cells), threads_(threads),
+            std::span<const Facet<d>> facets, int threads,
+            const std::function<void()> &look)
+      : vertices_(vertices), cells_(cells), threads_(threads), look_(look),
         neighbours_(adjacency<d>(cells, vertices.size())),
         walls_(walls<d>(cells, facets, vertices.size())) {}
 
   CertificateResult run() const {
     CertificateResult out;
-    out.delaunay = delaunay_bits<d>(mesh(walls_), threads_).bits;
+    out.delaunay = bits(walls_);
     out.star_ok = stars(out.delaunay);
     out.simplex_ok.resize(cells_.size());
     for (std::size_t c = 0; c < cells_.size(); ++c)
@@ -39,6 +42,7 @@ private:
   std::span<const Vertex<d>> vertices_;
   std::span<const Cell<d>> cells_;
   int threads_;
+  const std::function<void()> &look_;
   std::vector<Neighbours<d>> neighbours_;
   Walls walls_;
 
@@ -53,6 +57,15 @@ private:
   }
   [[nodiscard]] CertifiedMesh<d> mesh(const Walls &constraints) const {
     return {vertices_, cells_, neighbours_, constraints};
+  }
+
+  [[nodiscard]] std::vector<std::uint8_t> bits(const Walls &constraints) const {
+    return delaunay_bits<d>(mesh(constraints), threads_,
+                            [&](double) {
+                              look_();
+                              return true;
+                            })
+        .bits;
   }
 
   [[nodiscard]] std::vector<std::uint8_t>
@@ -116,7 +129,7 @@ private:
     };
     if (!has_interface)
       return count(star_ok);
-    return count(stars(delaunay_bits<d>(mesh(boundary), threads_).bits));
+    return count(stars(bits(boundary)));
   }
 
   void count_restricted(CertificateResult &out) const {
@@ -134,6 +147,8 @@ private:
       return locator->locate(x, none).distance == 0;
     };
     for (std::size_t c = 0; c < cells_.size(); ++c) {
+      if (c % cells_between_looks == 0)
+        look_();
       const Cell<d> &cell = cells_[c];
       std::uint8_t counts = 0;
       for (std::size_t k = 0; k <= d; ++k)
@@ -203,8 +218,9 @@ std::vector<std::array<Index, d + 1>> walls(std::span<const Cell<d>> cells,
 template <std::size_t d>
 CertificateResult certify(std::span<const Vertex<d>> vertices,
                           std::span<const Cell<d>> cells,
-                          std::span<const Facet<d>> facets, int threads) {
-  return Certifier<d>(vertices, cells, facets, threads).run();
+                          std::span<const Facet<d>> facets, int threads,
+                          const std::function<void()> &look) {
+  return Certifier<d>(vertices, cells, facets, threads, look).run();
 }
 
 template std::vector<std::array<Index, 3>>
@@ -212,8 +228,10 @@ template std::vector<std::array<Index, 3>>
 template std::vector<std::array<Index, 4>>
     walls(std::span<const Cell<3>>, std::span<const Facet<3>>, std::size_t);
 template CertificateResult certify(std::span<const Vertex<2>>, std::span<const Cell<2>>,
-                                   std::span<const Facet<2>>, int);
+                                   std::span<const Facet<2>>, int,
+                                   const std::function<void()> &);
 template CertificateResult certify(std::span<const Vertex<3>>, std::span<const Cell<3>>,
-                                   std::span<const Facet<3>>, int);
+                                   std::span<const Facet<3>>, int,
+                                   const std::function<void()> &);
 
 } // namespace anistar

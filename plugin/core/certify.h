@@ -24,11 +24,13 @@ struct CertificateResult {
 };
 
 /// @param facets boundary and constrained facets of the mesh, in any orientation.
+/// @param look is asked now and then; it may throw, to end the call.
 /// @throws std::invalid_argument when three cells share a facet.
 template <std::size_t d>
 [[nodiscard]] CertificateResult certify(std::span<const Vertex<d>> vertices,
                                         std::span<const Cell<d>> cells,
-                                        std::span<const Facet<d>> facets, int threads);
+                                        std::span<const Facet<d>> facets, int threads,
+                                        const std::function<void()> &look);
 
 /// For every facet of every cell 0 when it is one of `facets`, else `none`.
 template <std::size_t d>

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace anistar {
 namespace {
@@ -32,6 +34,28 @@ double diagonal_square(const SymmetricTensor<d> &M, const Vector<d> &y) {
     sum += M(i, i) * component * component;
   }
   return sum;
+}
+
+/// Whether x and the vertices are corners of one box along the axes of the metric,
+/// which are those of the coordinates, as on structured grids: they lie on one
+/// ellipsoid then. Only comparisons, so exact.
+template <std::size_t d>
+bool are_corners_of_box(const SymmetricTensor<d> &M, const Simplex<d> &simplex,
+                        const Vector<d> &x) {
+  for (std::size_t i = 0; i < d; ++i) {
+    const int axis = static_cast<int>(i);
+    double other = x[axis];
+    for (const Vector<d> &corner : simplex) {
+      if (other == x[axis])
+        other = corner[axis];
+      if (corner[axis] != x[axis] && corner[axis] != other)
+        return false;
+    }
+    for (std::size_t j = 0; j < i; ++j)
+      if (M(i, j) != 0)
+        return false;
+  }
+  return true;
 }
 
 /// The determinant of the edge vectors from the first vertex, and the cofactors of
@@ -117,6 +141,42 @@ template <std::size_t d> struct ExactBall {
   [[nodiscard]] Exact power(const Vector<d> &x) const {
     const Row y = difference<d, Exact>(x, simplex[0]);
     return determinant * bilinear<d>(M, y, y) - dot<d, Exact>(gradient, y);
+  }
+  /// Of the product of the gradient of the power at x and q - x.
+  [[nodiscard]] CGAL::Sign slope_sign(const Vector<d> &x, const Vector<d> &q) {
+    for (const Slope &known : slopes_)
+      if (known.x == &x && known.q == &q)
+        return known.sign;
+    const CGAL::Sign sign =
+        CGAL::sign(dot<d, Exact>(normal(x), difference<d, Exact>(q, x)));
+    slopes_.push_back({&x, &q, sign});
+    return sign;
+  }
+
+private:
+  struct Slope {
+    const Vector<d> *x, *q;
+    CGAL::Sign sign;
+  };
+  /// The gradient at points on the ellipsoid, and its products with edges there: few,
+  /// and met from several facets.
+  std::vector<std::pair<const Vector<d> *, Row>> normals_;
+  std::vector<Slope> slopes_;
+
+  [[nodiscard]] const Row &normal(const Vector<d> &x) {
+    for (const auto &[point, known] : normals_)
+      if (point == &x)
+        return known;
+    const Row y = difference<d, Exact>(x, simplex[0]);
+    Row found;
+    for (std::size_t i = 0; i < d; ++i) {
+      Exact half(0);
+      for (std::size_t j = 0; j < d; ++j)
+        half = half + Exact(M(i, j)) * y[j];
+      half = half * determinant;
+      found[i] = half + half - gradient[i];
+    }
+    return normals_.emplace_back(&x, std::move(found)).second;
   }
 };
 
@@ -205,9 +265,9 @@ Circumball<d>::Circumball(const SymmetricTensor<d> &M, const Simplex<d> &simplex
 
 template <std::size_t d> Circumball<d>::~Circumball() = default;
 
-template <std::size_t d> const ExactBall<d> &Circumball<d>::exact() const {
+template <std::size_t d> ExactBall<d> &Circumball<d>::exact() const {
   if (!exact_)
-    exact_ = std::make_unique<const ExactBall<d>>(M_, simplex_);
+    exact_ = std::make_unique<ExactBall<d>>(M_, simplex_);
   return *exact_;
 }
 
@@ -224,6 +284,8 @@ Side Circumball<d>::side(const Vector<d> &x, const Bounded &power) const {
     return Side::outside;
   if (power.is_negative())
     return Side::inside;
+  if (are_corners_of_box<d>(M_, simplex_, x))
+    return Side::boundary;
   const Exact value = exact().power(x);
   return static_cast<Side>(-static_cast<int>(CGAL::sign(value)));
 }
@@ -235,15 +297,50 @@ template <std::size_t d> Bounded Circumball<d>::square(const Vector<d> &y) const
 template <std::size_t d>
 bool Circumball<d>::meets(const std::array<const Vector<d> *, d> &facet,
                           const std::array<Bounded, d> &powers) const {
-  // an edge whose ends lie on the ellipsoid is inside it
-  if (std::count_if(powers.begin(), powers.end(), [](const Bounded &power) {
-        return power.value == 0 && power.error == 0;
-      }) >= 2)
-    return true;
+  const auto is_on_ball = [](const Bounded &power) {
+    return power.value == 0 && power.error == 0;
+  };
+  const auto on = std::find_if(powers.begin(), powers.end(), is_on_ball);
+  if (on != powers.end()) {
+    // an edge whose ends lie on the ellipsoid is inside it; the power is convex, so
+    // that a facet with one vertex on it meets it where an edge from there does
+    if (std::any_of(on + 1, powers.end(), is_on_ball))
+      return true;
+    return leaves_inwards(facet, static_cast<std::size_t>(on - powers.begin()));
+  }
   if constexpr (d == 2)
     return meets_segment(*facet[0], *facet[1], powers[0], powers[1]);
   else
     return meets_triangle(facet, powers);
+}
+
+/// Whether an edge that leaves vertex k of a facet, which lies on the ellipsoid, runs
+/// inside it: the power falls along it.
+template <std::size_t d>
+bool Circumball<d>::leaves_inwards(const std::array<const Vector<d> *, d> &facet,
+                                   std::size_t k) const {
+  const Vector<d> &p = *facet[k];
+  std::array<Answer, d> rises;
+  for (std::size_t i = 0; i < d; ++i) {
+    rises[i] = i == k ? Answer::yes : is_positive(slope(p, *facet[i]));
+    if (rises[i] == Answer::no)
+      return true;
+  }
+  for (std::size_t i = 0; i < d; ++i)
+    if (rises[i] == Answer::doubtful && exact().slope_sign(p, *facet[i]) < 0)
+      return true;
+  return false;
+}
+
+/// The product of the gradient of the power at p and q - p.
+template <std::size_t d>
+Bounded Circumball<d>::slope(const Vector<d> &p, const Vector<d> &q) const {
+  const Vector<d> y = p - simplex_[0], u = q - p, length = u.cwiseAbs();
+  const double product_size = double(d) * std::sqrt(diagonal_square<d>(M_, u)) *
+                              std::sqrt(diagonal_square<d>(M_, y));
+  return {(2 * product<d>(M_, y) - gradient_).dot(u),
+          bound * (2 * product_size + gradient_.cwiseAbs().dot(length)) +
+              gradient_error_.dot(length) + Bounded::underflow};
 }
 
 template <std::size_t d>

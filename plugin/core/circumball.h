@@ -41,10 +41,13 @@ private:
   Vector<d> gradient_;       ///< 2 g
   Vector<d> gradient_error_; ///< of each component; infinite for a flat simplex
 
-  mutable std::unique_ptr<const ExactBall<d>> exact_; ///< made at the first doubt
+  mutable std::unique_ptr<ExactBall<d>> exact_; ///< made at the first doubt
 
-  [[nodiscard]] const ExactBall<d> &exact() const;
+  [[nodiscard]] ExactBall<d> &exact() const;
   [[nodiscard]] Bounded square(const Vector<d> &y) const;
+  [[nodiscard]] bool leaves_inwards(const std::array<const Vector<d> *, d> &facet,
+                                    std::size_t k) const;
+  [[nodiscard]] Bounded slope(const Vector<d> &p, const Vector<d> &q) const;
   [[nodiscard]] bool meets_segment(const Vector<d> &p, const Vector<d> &q,
                                    const Bounded &at_p, const Bounded &at_q) const;
   [[nodiscard]] bool meets_triangle(const std::array<const Vector<d> *, d> &facet,

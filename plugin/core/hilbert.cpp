@@ -18,13 +18,11 @@ template <std::size_t d> std::uint64_t hilbert_key(std::array<std::uint32_t, d> 
   for (std::uint32_t q = top; q > 1; q >>= 1) {
     const std::uint32_t p = q - 1;
     for (std::size_t i = 0; i < d; ++i) {
-      if (x[i] & q) {
-        x[0] ^= p;
-      } else {
-        const std::uint32_t t = (x[0] ^ x[i]) & p;
-        x[0] ^= t;
-        x[i] ^= t;
-      }
+      // without a branch, which would be taken at random: turn x[0], or swap with it
+      const std::uint32_t is_set = 0u - ((x[i] & q) != 0);
+      const std::uint32_t t = (x[0] ^ x[i]) & p & ~is_set;
+      x[0] ^= (p & is_set) | t;
+      x[i] ^= t;
     }
   }
   for (std::size_t i = 1; i < d; ++i)

@@ -51,10 +51,21 @@ template <std::size_t d>
 Locator<d>::Locator(std::span<const Vector<d>> points, std::span<const Cell<d>> cells,
                     int threads)
     : points_(points.begin(), points.end()), cells_(cells.begin(), cells.end()),
-      neighbours_(adjacency<d>(cells, points.size())),
-      boundary_(boundary_facets<d>(neighbours_)),
-      cell_tree_(cell_boxes<d>(points, cells), threads),
-      boundary_tree_(facet_boxes<d>(points, cells, boundary_)) {}
+      neighbours_(adjacency<d>(cells, points.size())), threads_(threads) {}
+
+template <std::size_t d> const BoxTree<d> &Locator<d>::cell_tree() const {
+  return cell_tree_.get(
+      [&] { return BoxTree<d>(cell_boxes<d>(points_, cells_), threads_); });
+}
+
+template <std::size_t d>
+const typename Locator<d>::Boundary &Locator<d>::boundary() const {
+  return boundary_.get([&] {
+    std::vector<HalfFacet> facets = boundary_facets<d>(neighbours_);
+    BoxTree<d> tree(facet_boxes<d>(points_, cells_, facets));
+    return Boundary{std::move(facets), std::move(tree)};
+  });
+}
 
 template <std::size_t d> Simplex<d> Locator<d>::simplex(Index cell) const {
   Simplex<d> s;
@@ -95,7 +106,7 @@ template <std::size_t d> Index Locator<d>::walk(const Vector<d> &x, Index start)
 
 template <std::size_t d> Index Locator<d>::containing(const Vector<d> &x) const {
   Index found = none;
-  cell_tree_.meeting(Box<d>{x, x}, [&](Index cell) {
+  cell_tree().meeting(Box<d>{x, x}, [&](Index cell) {
     const Simplex<d> corners = simplex(cell);
     for (std::size_t i = 0; i <= d; ++i) {
       Simplex<d> replaced = corners;
@@ -128,8 +139,9 @@ Location<d> Locator<d>::inside(const Vector<d> &x, Index cell) const {
 template <std::size_t d> Location<d> Locator<d>::nearest(const Vector<d> &x) const {
   Location<d> best;
   double best_distance = std::numeric_limits<double>::infinity();
-  boundary_tree_.nearest(x, best_distance, [&](Index item, double) {
-    const HalfFacet half = boundary_[static_cast<std::size_t>(item)];
+  const Boundary &boundary = this->boundary();
+  boundary.tree.nearest(x, best_distance, [&](Index item, double) {
+    const HalfFacet half = boundary.facets[static_cast<std::size_t>(item)];
     const Cell<d> &cell = cells_[static_cast<std::size_t>(half.cell())];
     const Facet<d> facet = facet_of<d>(cell, half.facet());
     std::array<Vector<d>, d> corners;

@@ -3,6 +3,7 @@
 
 #include "adjacency.h"
 #include "box_tree.h"
+#include "deferred.h"
 #include "predicates.h"
 #include "tensor.h"
 
@@ -20,7 +21,8 @@ template <std::size_t d> struct Location {
 };
 
 /// Finds the cell of a point by a walk, then by a box tree, and the nearest point of
-/// the mesh for points outside. Safe for concurrent use once built.
+/// the mesh for points outside. The trees are made when a walk first fails. Safe for
+/// concurrent use.
 template <std::size_t d> class Locator {
 public:
   /// @pre cells positively oriented. @throws std::invalid_argument (see adjacency).
@@ -39,16 +41,24 @@ public:
   [[nodiscard]] const std::vector<Neighbours<d>> &neighbours() const {
     return neighbours_;
   }
-  [[nodiscard]] const BoxTree<d> &cell_tree() const { return cell_tree_; }
+  [[nodiscard]] const BoxTree<d> &cell_tree() const;
   [[nodiscard]] Simplex<d> simplex(Index cell) const;
 
 private:
   std::vector<Vector<d>> points_;
   std::vector<Cell<d>> cells_;
   std::vector<Neighbours<d>> neighbours_;
-  std::vector<HalfFacet> boundary_;
-  BoxTree<d> cell_tree_, boundary_tree_;
+  int threads_;
 
+  /// The facets on the boundary.
+  struct Boundary {
+    std::vector<HalfFacet> facets;
+    BoxTree<d> tree;
+  };
+  Deferred<BoxTree<d>> cell_tree_;
+  Deferred<Boundary> boundary_;
+
+  [[nodiscard]] const Boundary &boundary() const;
   [[nodiscard]] Index walk(const Vector<d> &x, Index start) const;
   [[nodiscard]] Index containing(const Vector<d> &x) const;
   [[nodiscard]] Location<d> inside(const Vector<d> &x, Index cell) const;

@@ -73,8 +73,12 @@ private:
 StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed, int threads,
                       bool mend) {
   const Triangulation<2> &mesh = w.mesh;
-  DelaunayBits found = delaunay_bits<2>(
-      {mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints}, threads);
+  DelaunayBits found =
+      delaunay_bits<2>({mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints},
+                       threads, [&](double fraction) {
+                         (void)monitor.look(fraction);
+                         return true;
+                       });
   StarCheck check;
   check.failures = failing_cells(mesh, found.bits).size();
   if (mend && check.failures > 0) {

@@ -109,7 +109,7 @@ std::size_t mend_failures(const Triangulation<d> &mesh, Mender &mender,
        ++round) {
     std::size_t moved = 0;
     for (Index c : failing)
-      if (monitor.keep_going(0, 0))
+      if (monitor.look(double(round) / max_rounds))
         moved += mender.mend(c, round);
     if (moved == 0)
       break;

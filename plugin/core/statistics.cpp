@@ -120,7 +120,7 @@ Statistics measure(std::span<const Vertex<2>> vertices, std::span<const Cell<2>>
 }
 
 Statistics measure(std::span<const Vertex<3>> vertices, std::span<const Cell<3>> cells,
-                   int threads) {
+                   std::span<const std::array<Index, 2>> edges, int threads) {
   const auto vertex = [&](Index v) -> const Vertex<3> & {
     return vertices[static_cast<std::size_t>(v)];
   };
@@ -129,7 +129,6 @@ Statistics measure(std::span<const Vertex<3>> vertices, std::span<const Cell<3>>
     sums.add_cell(
         quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2]), vertex(cell[3])));
   });
-  const auto edges = edges_of<3>(cells, vertices.size());
   all += summed(edges.size(), threads, [&](Sums &sums, std::size_t e) {
     sums.add_edge(edge_length(vertex(edges[e][0]), vertex(edges[e][1])));
   });
@@ -173,8 +172,8 @@ DistortionQuantiles distortion_quantiles(std::span<const Vertex<2>> vertices,
 }
 
 DistortionQuantiles distortion_quantiles(std::span<const Vertex<3>> vertices,
-                                         std::span<const Cell<3>> cells, int threads) {
-  const auto edges = edges_of<3>(cells, vertices.size());
+                                         std::span<const std::array<Index, 2>> edges,
+                                         int threads) {
   std::vector<double> values(edges.size());
   parallel_ranges(edges.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e)

@@ -27,8 +27,11 @@ struct Statistics {
                                  std::span<const Cell<2>> cells,
                                  std::span<const Neighbours<2>> neighbours,
                                  int threads);
+/// @param edges of the cells, each once
 [[nodiscard]] Statistics measure(std::span<const Vertex<3>> vertices,
-                                 std::span<const Cell<3>> cells, int threads);
+                                 std::span<const Cell<3>> cells,
+                                 std::span<const std::array<Index, 2>> edges,
+                                 int threads);
 
 /// Quantiles of ln gamma, the logarithm of the distortion between the metrics at the
 /// two ends of an edge: what decides whether stars can agree.
@@ -40,7 +43,7 @@ distortion_quantiles(std::span<const Vertex<2>> vertices,
                      std::span<const Cell<2>> cells, int threads);
 [[nodiscard]] DistortionQuantiles
 distortion_quantiles(std::span<const Vertex<3>> vertices,
-                     std::span<const Cell<3>> cells, int threads);
+                     std::span<const std::array<Index, 2>> edges, int threads);
 
 /// gamma(M, N) = max(|F_M^-1 F_N|, |F_N^-1 F_M|), the distortion between two metrics
 /// (RR-7712 v2, section 2).

@@ -229,7 +229,9 @@ private:
     classify_surface_points();
     for (std::size_t v = 0; v < n; ++v)
       if (!at_point_[v].empty())
-        out_.dimension[v] = is_smooth_ridge_point(static_cast<Index>(v)) ? 1 : 0;
+        out_.dimension[v] =
+            out_.dimension[v] != 0 && is_smooth_ridge_point(static_cast<Index>(v)) ? 1
+                                                                                   : 0;
     for (Index v : in_.corners)
       out_.dimension[static_cast<std::size_t>(v)] = 0;
     for (std::size_t f = 0; f < in_.facets.size(); ++f)
@@ -238,8 +240,7 @@ private:
           out_.dimension[static_cast<std::size_t>(v)] = 0;
   }
 
-  /// A point without ridges where sheets only touch is a corner: every sheet alone is
-  /// a closed fan, so the point has as many edges as facets there.
+  /// A point where sheets only touch is a corner.
   void classify_surface_points() {
     std::vector<std::vector<std::size_t>> facets(in_.points.size());
     for (std::size_t f = 0; f < in_.facets.size(); ++f)
@@ -248,12 +249,13 @@ private:
     for (std::size_t v = 0; v < facets.size(); ++v) {
       if (facets[v].empty())
         continue;
-      out_.dimension[v] = is_one_fan(static_cast<Index>(v), facets[v]) ? 2 : 0;
+      out_.dimension[v] = is_one_fan(facets[v]) ? 2 : 0;
       out_.support[v] = out_.facet_patch[facets[v].front()];
     }
   }
 
-  [[nodiscard]] bool is_one_fan(Index v, const std::vector<std::size_t> &fan) const {
+  /// Whether the facets at a point are joined by edges.
+  [[nodiscard]] bool is_one_fan(const std::vector<std::size_t> &fan) const {
     DisjointSets sets(fan.size());
     const auto shares_edge = [&](std::size_t f, std::size_t g) {
       int common = 0;
@@ -268,7 +270,6 @@ private:
           sets.join(i, j);
     std::size_t n = 0;
     (void)sets.numbers(n);
-    (void)v;
     return n == 1;
   }
 
@@ -279,6 +280,8 @@ private:
     const Ridge &r = ridges_[here[0]], &s = ridges_[here[1]];
     if (r.tag != s.tag || r.is_given != s.is_given || r.patches != s.patches)
       return false;
+    if (r.patches.empty() && out_.dimension[static_cast<std::size_t>(v)] != 3)
+      return false; // a line inside the domain goes through a surface
     const auto leg = [&](const Ridge &ridge) -> Vector<3> {
       return point(ridge.ends[ridge.ends[0] == v ? 1 : 0]) - point(v);
     };

@@ -2,19 +2,36 @@
 
 namespace anistar {
 
-bool is_in_ball(const SymmetricTensor<3> &M, const Vector<3> &a, const Vector<3> &b,
-                const Vector<3> &c, const Vector<3> &d, const Vector<3> &p) {
-  const Vector<3> u = a - p, v = b - p, w = c - p, x = d - p;
-  const Vector<3> vw = v.cross(w), ux = u.cross(x);
-  const double terms[4] = {
-      x.dot(vw) * quadratic<3>(M, u), w.dot(ux) * quadratic<3>(M, v),
-      -v.dot(ux) * quadratic<3>(M, w), -u.dot(vw) * quadratic<3>(M, x)};
-  double det = 0, size = 0;
-  for (const double term : terms) {
-    det += term;
-    size += std::abs(term);
+namespace {
+
+/// Relative to the sum of the magnitudes of the terms of the determinant.
+constexpr double ball_tolerance = 1e-9;
+
+} // namespace
+
+void BallTests::evaluate(const SymmetricTensor<3> &M) {
+  const std::array<double, 6> m = M.entries;
+  const auto square = [&](double x, double y, double z) {
+    return m[0] * x * x + m[2] * y * y + m[5] * z * z +
+           2 * (m[1] * x * y + m[3] * x * z + m[4] * y * z);
+  };
+  for (std::size_t i = 0; i < n_; ++i) {
+    const double ax = a_[0][i], ay = a_[1][i], az = a_[2][i];
+    const double bx = b_[0][i], by = b_[1][i], bz = b_[2][i];
+    const double cx = c_[0][i], cy = c_[1][i], cz = c_[2][i];
+    const double dx = d_[0][i], dy = d_[1][i], dz = d_[2][i];
+    const double bcx = by * cz - bz * cy, bcy = bz * cx - bx * cz,
+                 bcz = bx * cy - by * cx;
+    const double adx = ay * dz - az * dy, ady = az * dx - ax * dz,
+                 adz = ax * dy - ay * dx;
+    const double a = (dx * bcx + (dy * bcy + dz * bcz)) * square(ax, ay, az),
+                 b = (cx * adx + (cy * ady + cz * adz)) * square(bx, by, bz),
+                 c = -(bx * adx + (by * ady + bz * adz)) * square(cx, cy, cz),
+                 d = -(ax * bcx + (ay * bcy + az * bcz)) * square(dx, dy, dz);
+    excess_[i] =
+        a + b + c + d -
+        ball_tolerance * (std::abs(a) + std::abs(b) + std::abs(c) + std::abs(d));
   }
-  return det > 1e-9 * size;
 }
 
 void StarShapes::evaluate(const Vertex<3> &vertex) {

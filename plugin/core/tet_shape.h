@@ -103,12 +103,6 @@ inline constexpr double squared_flatness = flatness * flatness;
   return (b - a).dot((c - a).cross(d - a));
 }
 
-/// Whether p lies in the circumball of the positive cell abcd in the metric M, beyond
-/// round-off. The determinant is linear in M. It proposes, and decides nothing.
-[[nodiscard]] bool is_in_ball(const SymmetricTensor<3> &M, const Vector<3> &a,
-                              const Vector<3> &b, const Vector<3> &c,
-                              const Vector<3> &d, const Vector<3> &p);
-
 /// Close to mean_length, without a logarithm.
 [[nodiscard]] inline double fast_length(const Vertex<3> &a, const Vertex<3> &b) {
   const Vector<3> e = b.x - a.x;
@@ -116,6 +110,35 @@ inline constexpr double squared_flatness = flatness * flatness;
                lb = std::sqrt(quadratic<3>(b.M, e));
   return (2 * std::sqrt(la * lb) + .5 * (la + lb)) / 3;
 }
+
+/// Which of many cells have one point in their circumballs in one metric, beyond
+/// round-off. The determinant is linear in the metric. It proposes, and decides
+/// nothing.
+class BallTests {
+public:
+  static constexpr std::size_t capacity = 128;
+
+  void clear() { n_ = 0; }
+  [[nodiscard]] std::size_t size() const { return n_; }
+  /// @pre abcd is positive, and there are less than `capacity`.
+  void add(const Vector<3> &a, const Vector<3> &b, const Vector<3> &c,
+           const Vector<3> &d, const Vector<3> &p) {
+    for (int k = 0; k < 3; ++k) {
+      a_[k][n_] = a[k] - p[k];
+      b_[k][n_] = b[k] - p[k];
+      c_[k][n_] = c[k] - p[k];
+      d_[k][n_] = d[k] - p[k];
+    }
+    ++n_;
+  }
+  void evaluate(const SymmetricTensor<3> &M);
+  [[nodiscard]] bool is_in_ball(std::size_t k) const { return excess_[k] > 0; }
+
+private:
+  std::size_t n_ = 0;
+  double a_[3][capacity], b_[3][capacity], c_[3][capacity], d_[3][capacity];
+  double excess_[capacity];
+};
 
 /// The cells around one vertex, laid out for many trial positions of it.
 class StarShapes {

@@ -70,32 +70,60 @@ bool has_ridge(const Volume &volume, const Cell<3> &cell) {
   return false;
 }
 
+namespace {
+
+/// Cells that a cavity may take, to be tested side by side.
+class CavityCandidates {
+public:
+  [[nodiscard]] bool has_room() const { return balls_.size() + 4 <= cells_.size(); }
+  void add(const Triangulation<3> &mesh, Index c, const Vector<3> &x) {
+    const Simplex<3> s = mesh.simplex(c);
+    cells_[balls_.size()] = c;
+    balls_.add(s[0], s[1], s[2], s[3], x);
+  }
+  /// Moves those whose circumball contains the point to the cavity.
+  void take(Volume &volume, const SymmetricTensor<3> &M, std::vector<Index> &cavity) {
+    balls_.evaluate(M);
+    for (std::size_t k = 0; k < balls_.size(); ++k)
+      if (balls_.is_in_ball(k) && !volume.is_marked_cell(cells_[k]) &&
+          !has_ridge(volume, volume.mesh.at(cells_[k]))) {
+        volume.mark_cell(cells_[k]);
+        cavity.push_back(cells_[k]);
+      }
+    balls_.clear();
+  }
+
+private:
+  BallTests balls_;
+  std::array<Index, BallTests::capacity> cells_;
+};
+
+} // namespace
+
 void grow_cavity(Volume &volume, Index v, std::vector<Index> &star) {
   const Triangulation<3> &mesh = volume.mesh;
   const Vertex<3> &here = mesh.vertex(v);
   const std::size_t n_star = mesh.is_used(v) ? star.size() : 0;
-  for (std::size_t i = 0; i < star.size(); ++i) {
-    const Index c = star[i];
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (i < n_star && mesh.at(c)[k] != v)
-        continue;
-      const HalfFacet h(c, k), beyond = mesh.opposite(h);
-      if (!beyond.exists() || volume.is_marked_cell(beyond.cell()) ||
-          (volume.is_walled(c) && mesh.constraint(h) != none))
-        continue;
-      if (volume.slab && !volume.is_inside(mesh.apex(beyond))) {
-        volume.is_put_off = true;
-        return;
+  CavityCandidates candidates;
+  std::size_t i = 0;
+  do { // one layer of cells after another
+    for (; i < star.size() && candidates.has_room(); ++i)
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Index c = star[i];
+        if (i < n_star && mesh.at(c)[k] != v)
+          continue;
+        const HalfFacet h(c, k), beyond = mesh.opposite(h);
+        if (!beyond.exists() || volume.is_marked_cell(beyond.cell()) ||
+            (volume.is_walled(c) && mesh.constraint(h) != none))
+          continue;
+        if (volume.slab && !volume.is_inside(mesh.apex(beyond))) {
+          volume.is_put_off = true;
+          return;
+        }
+        candidates.add(mesh, beyond.cell(), here.x);
       }
-      const Cell<3> &t = mesh.at(beyond.cell());
-      if (is_in_ball(here.M, mesh.vertex(t[0]).x, mesh.vertex(t[1]).x,
-                     mesh.vertex(t[2]).x, mesh.vertex(t[3]).x, here.x) &&
-          !has_ridge(volume, t)) {
-        volume.mark_cell(beyond.cell());
-        star.push_back(beyond.cell());
-      }
-    }
-  }
+    candidates.take(volume, here.M, star);
+  } while (i < star.size());
 }
 
 } // namespace anistar

@@ -305,7 +305,7 @@ void restore(Volume &volume, Snapshot &&from) {
 }
 
 /// Decides again where the mesh has changed since the clock showed `since`.
-void renew(const Volume &volume, std::uint32_t since, int threads,
+void renew(const Volume &volume, std::uint32_t since, int threads, const Look &look,
            DelaunayBits &known) {
   const Triangulation<3> &mesh = volume.mesh;
   known.bits.resize(mesh.cells.size(), 0);
@@ -316,7 +316,7 @@ void renew(const Volume &volume, std::uint32_t since, int threads,
       changed.push_back(static_cast<Index>(c));
   renew_bits<3>(certified(mesh),
                 dependent_cells<3>(mesh.neighbours, changed, known.reach), threads,
-                known);
+                look, known);
 }
 
 } // namespace
@@ -348,7 +348,14 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
           agree_volume(volume, monitor, hausdorff_number, round_seed, threads).moves;
     else
       rounds.treat(bad, counts.rounds, progress.effort(bad.size()));
-    renew(volume, since, threads, known);
+    // all of it, or the bits would be those of another mesh
+    renew(
+        volume, since, threads,
+        [&](double) {
+          (void)monitor.look(double(counts.rounds) / max_rounds);
+          return true;
+        },
+        known);
     if (agreeing)
       counts.moves += mend_stars(volume, monitor, hausdorff_number, round_seed, known);
     progress.note(failing_fraction(volume.mesh, known.bits));

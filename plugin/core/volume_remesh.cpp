@@ -22,14 +22,17 @@ constexpr int max_growth_rounds = 60, max_converged_rounds = 6;
 /// fractions of the vertices.
 constexpr double step_is_dry = .02, growth_is_dry = .03;
 /// Growth ends as well when a round changes the number of vertices by less than this:
-/// where the metric is steep some edges are split and collapsed for ever. A step above
-/// the last ends after as many such rounds, for the next one to go on elsewhere.
-constexpr double steady = .01;
+/// where the metric is steep some edges are split and collapsed for ever. Or when the
+/// repairs take away this fraction of what was split. A step above the last ends after
+/// as many such rounds, for the next one to go on elsewhere.
+constexpr double steady = .01, undone = .5;
 constexpr int max_steady_rounds = 2;
 /// The mesh is sorted again when it has grown by this.
 constexpr double growth_between_sorts = 1.6;
-/// Or, at the final size, when this fraction of its vertices came or went.
+/// Or when this fraction of its vertices came or went; but while it grows not one of so
+/// few cells, which the cache holds in any order.
 constexpr double change_between_sorts = .1;
+constexpr std::size_t cached_cells = 1 << 15;
 /// Sweeps over the whole mesh at its final size.
 constexpr int n_sweeps = 3;
 /// Where the metric is steep, all is polished, several times; else what is below this.
@@ -40,13 +43,53 @@ constexpr double polished_below = .5;
 /// stays below .3 on 90 % of the edges, and at least 97 % up to the first bound here;
 /// the second one is for 99 % of the edges.
 constexpr double largest_agreeing_p90 = .35, largest_agreeing_p99 = .6;
+
+/// Keeps a mesh sorted along its curve while vertices come and go: what is near in
+/// space must be near in memory, or most of the time goes into waiting for it.
+class CurveOrder {
+public:
+  CurveOrder(Volume &volume, const VolumePasses &passes, int threads)
+      : volume_(volume), passes_(passes), threads_(threads),
+        n_vertices_(volume.n_vertices()) {}
+
+  void restore() {
+    const bool has_grown = static_cast<double>(volume_.mesh.vertices.size()) >
+                           growth_between_sorts * static_cast<double>(n_vertices_);
+    const bool is_scattered =
+        volume_.mesh.cells.size() > cached_cells && has_changed(n_changes_);
+    if (!has_grown && !is_scattered)
+      return;
+    renumber(volume_, threads_);
+    n_vertices_ = volume_.n_vertices();
+    n_changes_ = n_changes();
+  }
+  void finish() {
+    if (has_changed(0))
+      renumber(volume_, threads_);
+  }
+
+private:
+  Volume &volume_;
+  const VolumePasses &passes_;
+  int threads_;
+  std::size_t n_vertices_, n_changes_ = 0; ///< at the last sort
+
+  [[nodiscard]] std::size_t n_changes() const {
+    return passes_.counts().splits + passes_.counts().collapses;
+  }
+  [[nodiscard]] bool has_changed(std::size_t since) const {
+    return static_cast<double>(n_changes() - since) >
+           change_between_sorts * static_cast<double>(volume_.n_vertices());
+  }
+};
+
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
 void grow(Volume &volume, VolumePasses &passes, int threads) {
   for (int round = 0; round < max_surface_rounds; ++round)
     if (passes.follow_surfaces() == 0)
       break;
   double threshold = std::max(longest_edge, passes.longest_edge() / growth_step);
-  std::size_t sorted_at = volume.n_vertices();
+  CurveOrder order(volume, passes, threads);
   int converged = 0, n_steady = 0;
   bool is_lowered = false;
   for (int round = 0; round < max_growth_rounds && !passes.is_stopped(); ++round) {
@@ -57,16 +100,14 @@ void grow(Volume &volume, VolumePasses &passes, int threads) {
     const std::size_t splits = passes.split({threshold, 1e-4, .45, .5});
     passes.swap(.5);
     passes.vertices({is_last_step ? .6 : .5, std::max(longest_edge, threshold), true});
-    if (static_cast<double>(volume.mesh.vertices.size()) >
-        growth_between_sorts * static_cast<double>(sorted_at)) {
-      renumber(volume, threads);
-      sorted_at = volume.n_vertices();
-    }
+    order.restore();
+    const auto unrepaired = static_cast<double>(volume.n_vertices());
     passes.repair(.1);
-    const double fraction =
-        static_cast<double>(splits) / static_cast<double>(volume.n_vertices());
-    const double change = static_cast<double>(volume.n_vertices()) / before - 1;
-    const bool is_steady = std::abs(change) < steady;
+    const auto after = static_cast<double>(volume.n_vertices());
+    const double fraction = static_cast<double>(splits) / after;
+    const bool is_steady =
+        std::abs(after / before - 1) < steady ||
+        (splits > 0 && unrepaired - after > undone * static_cast<double>(splits));
     if (is_last_step &&
         (fraction < growth_is_dry || is_steady || ++converged >= max_converged_rounds))
       break;
@@ -78,10 +119,7 @@ void grow(Volume &volume, VolumePasses &passes, int threads) {
       n_steady = 0;
     }
   }
-  const std::size_t changes = passes.counts().splits + passes.counts().collapses;
-  if (static_cast<double>(changes) >
-      change_between_sorts * static_cast<double>(volume.n_vertices()))
-    renumber(volume, threads);
+  order.finish();
 }
 
 /// Phase 3: sweeps at the final size.
@@ -119,8 +157,9 @@ std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
   if (settings.agreement == AgreementMode::when_possible &&
       settings.consistency == ConsistencyMode::off)
     return "skipped: not asked for, and in 3D it takes as long as the remeshing";
-  const DistortionQuantiles gamma =
-      distortion_quantiles(volume.mesh.vertices, volume.mesh.cells, settings.threads);
+  const DistortionQuantiles gamma = distortion_quantiles(
+      volume.mesh.vertices, edges_of<3>(volume.mesh.cells, volume.mesh.vertices.size()),
+      settings.threads);
   const std::string too_fast = "skipped: the metric varies too fast, ln gamma ";
   if (gamma.p90 > largest_agreeing_p90)
     return too_fast + "p90 " + quotient(gamma.p90, largest_agreeing_p90);
@@ -132,6 +171,7 @@ std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
 /// Phase 4, as far as the metric and the settings let it. @pre the mesh was renumbered.
 void agree(Volume &volume, Monitor &monitor, const RemeshSettings &settings,
            VolumeResult &out) {
+  (void)monitor.look(0); // small meshes come here without a look at the clock
   out.agreement = reason_to_skip(volume, monitor, settings);
   if (!out.agreement.empty())
     return;
@@ -177,6 +217,25 @@ void extract_facets(const Volume &volume, VolumeResult &out) {
   }
 }
 
+void take_mesh(Volume &volume, VolumeResult &out) {
+  extract_facets(volume, out);
+  out.vertices = std::move(volume.mesh.vertices);
+  out.cells = std::move(volume.mesh.cells);
+  out.cell_tags = std::move(volume.mesh.region);
+  out.counts["curved"] = volume.surface.is_curved() ? 1 : 0;
+}
+
+void take_counts(const VolumeCounts &counts, VolumeResult &out) {
+  for (const auto &[name, value] : {std::pair{"splits", counts.splits},
+                                    {"collapses", counts.collapses},
+                                    {"edge_swaps", counts.edge_swaps},
+                                    {"face_swaps", counts.face_swaps},
+                                    {"moves", counts.moves},
+                                    {"insertions", counts.insertions},
+                                    {"repairs", counts.repairs}})
+    out.counts[name] = static_cast<double>(value);
+}
+
 /// Phases 5 and 6 where agreement or consistency was asked for, unless a budget has
 /// been spent: the certificate takes longer than a pass. @pre the mesh was renumbered.
 void certify_stars(Volume &volume, Monitor &monitor, const RemeshSettings &settings,
@@ -186,7 +245,11 @@ void certify_stars(Volume &volume, Monitor &monitor, const RemeshSettings &setti
       (settings.agreement != AgreementMode::on && !inserting))
     return;
   watch.phase("certificate");
-  DelaunayBits known = delaunay_bits<3>(certified(volume.mesh), settings.threads);
+  DelaunayBits known =
+      delaunay_bits<3>(certified(volume.mesh), settings.threads,
+                       [&](double fraction) { return monitor.look(fraction); });
+  if (monitor.reason() != StopReason::finished)
+    return;
   out.counts["star_failures"] =
       static_cast<double>(failing_cells(volume.mesh, known.bits).size());
   out.counts["star_moves"] = static_cast<double>(
@@ -215,41 +278,31 @@ VolumeResult remesh_volume(const VolumeInput &input,
   Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
   Stopwatch watch(monitor, out.seconds);
 
-  watch.phase("background");
-  const Background<3> background(input.surface.points, input.cells, metric,
-                                 settings.threads);
-  Volume volume =
-      make_volume(input, metric, background, geometry, std::move(projection));
-  VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed,
-                      settings.threads);
-  watch.phase("size");
-  grow(volume, passes, settings.threads);
-  watch.phase("shape");
-  shape(passes);
-  renumber(volume, settings.threads);
-  watch.phase("agreement");
-  agree(volume, monitor, settings, out);
-  certify_stars(volume, monitor, settings, watch, out);
-
-  watch.phase("report");
-  extract_facets(volume, out);
-  out.vertices = std::move(volume.mesh.vertices);
-  out.cells = std::move(volume.mesh.cells);
-  out.cell_tags = std::move(volume.mesh.region);
-  out.statistics = measure(out.vertices, out.cells, settings.threads);
-  out.distortion = distortion_quantiles(out.vertices, out.cells, settings.threads);
+  { // what the mesh is made with is freed before the report, which takes room too
+    watch.phase("background");
+    const Background<3> background(input.surface.points, input.cells, metric,
+                                   settings.threads);
+    Volume volume =
+        make_volume(input, metric, background, geometry, std::move(projection));
+    VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed,
+                        settings.threads);
+    watch.phase("size");
+    grow(volume, passes, settings.threads);
+    watch.phase("shape");
+    shape(passes);
+    renumber(volume, settings.threads);
+    watch.phase("agreement");
+    agree(volume, monitor, settings, out);
+    certify_stars(volume, monitor, settings, watch, out);
+    watch.phase("report");
+    take_mesh(volume, out);
+    take_counts(passes.counts(), out);
+    out.reason = passes.is_full() ? StopReason::max_vertices : monitor.reason();
+  }
+  const auto edges = edges_of<3>(out.cells, out.vertices.size());
+  out.statistics = measure(out.vertices, out.cells, edges, settings.threads);
+  out.distortion = distortion_quantiles(out.vertices, edges, settings.threads);
   watch.stop();
-  const VolumeCounts &counts = passes.counts();
-  for (const auto &[name, value] : {std::pair{"splits", counts.splits},
-                                    {"collapses", counts.collapses},
-                                    {"edge_swaps", counts.edge_swaps},
-                                    {"face_swaps", counts.face_swaps},
-                                    {"moves", counts.moves},
-                                    {"insertions", counts.insertions},
-                                    {"repairs", counts.repairs}})
-    out.counts[name] = static_cast<double>(value);
-  out.counts["curved"] = volume.surface.is_curved() ? 1 : 0;
-  out.reason = passes.is_full() ? StopReason::max_vertices : monitor.reason();
   return out;
 }
 

@@ -37,13 +37,10 @@ bool VolumePasses::go_on(std::size_t k, std::size_t n) {
 }
 
 double VolumePasses::longest_edge() const {
-  const Triangulation<3> &mesh = volume_.mesh;
   double longest = 0;
-  for (const Cell<3> &cell : mesh.cells)
-    if (cell[0] != none)
-      for (const auto &[i, j] : cell_edges)
-        longest =
-            std::max(longest, fast_length(mesh.vertex(cell[i]), mesh.vertex(cell[j])));
+  for (std::size_t c = 0; c < volume_.mesh.cells.size(); ++c)
+    if (volume_.mesh.is_alive(static_cast<Index>(c)))
+      longest = longest_edge(static_cast<Index>(c), longest).length;
   return longest;
 }
 

@@ -92,7 +92,7 @@ bool VolumePasses::remove_edge(Index c, Index a, Index b) {
   for (std::size_t k = 0; k < n; ++k) {
     if (!walls->admits_apex(k))
       continue;
-    if (!is_ring_better(k, worst + swap_gain))
+    if (!is_ring_better(k, better_by(swap_gain, worst)))
       continue;
     if (operator_.replace(shell_.all(), shell_.ring[k], {a, b},
                           improvement(swap_gain, hausdorff_number_)))

@@ -185,8 +185,8 @@ bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double
   const double floor = std::min(worst, move_floor);
   if (least < floor - 1e-6 || least <= 0)
     return false;
-  const bool is_better =
-      (least > worst + 1e-4 && total > sum - .02 * n) || total > sum + .002 * n;
+  const bool is_better = (least > better_by(1e-4, worst) && total > sum - .02 * n) ||
+                         total > sum + .002 * n;
   if (!is_better || (volume_.feature(v) != 3 &&
                      !keeps_surfaces(volume_, star_, v, x, hausdorff_number_)))
     return false;

@@ -1,6 +1,7 @@
 """The certificate in three dimensions is the definition, on hundreds of small meshes."""
 
 import dataclasses
+import itertools
 import json
 
 import numpy as np
@@ -14,6 +15,7 @@ from tetrahedra import (
     delaunay_on_convex_domain,
     exact_in_sphere,
     exact_orientation,
+    grid_case,
     in_sphere,
     lattice_case,
     metric_of,
@@ -76,6 +78,17 @@ def test_between_walls_it_is_the_walk_through_the_open_ellipsoid(seeds):
         assert_agrees(mesh, certify(mesh, metric), walk_through_ellipsoids(mesh, metric))
 
 
+def test_between_walls_of_a_grid_vertices_on_the_ellipsoid_and_tangent_facets_are_no_way():
+    ties = 0
+    for seed in range(6):
+        mesh, metric = grid_case(seed)
+        assert validate(mesh) == []
+        assert_agrees(mesh, certify(mesh, metric), walk_through_ellipsoids(mesh, metric))
+        on_sphere = in_sphere(metric[mesh.cells[0, 0]], mesh.points[mesh.cells[0]], mesh.points)
+        ties += (on_sphere == 0).sum() > 4
+    assert ties == 6
+
+
 def test_stars_without_interfaces_only_stop_at_the_boundary():
     for seed in range(2000, 2005):
         mesh, metric = walled_case(seed)
@@ -97,7 +110,8 @@ def random_frame(seed):
 
 
 def assert_exact(M, tetrahedron, point):
-    tetrahedron, point = np.array(tetrahedron, dtype=float), np.array(point, dtype=float)
+    tetrahedron = np.array(tetrahedron, dtype=float, order="C")
+    point = np.array(point, dtype=float)
     sign = exact_orientation(tetrahedron)
     assume(sign != 0)
     if sign < 0:
@@ -105,6 +119,7 @@ def assert_exact(M, tetrahedron, point):
     expected = exact_in_sphere(M, tetrahedron, point)
     assert _core.in_metric_sphere3(M, tetrahedron, point) == expected
     assert _core.side_of_metric_ball3(M, tetrahedron, point) == expected
+    return expected
 
 
 @given(seeds, st.tuples(points, points, points, points), points)
@@ -122,13 +137,31 @@ def test_it_is_exact_within_a_few_units_of_the_last_place_of_the_ellipsoid(seed,
     assert_exact(M, near[:4], near[4])
 
 
+@given(seeds, st.integers(0, 7), st.sampled_from([0, 0, 1, 2]), st.booleans())
+def test_corners_of_a_box_lie_on_one_ellipsoid_of_its_axes_and_nothing_else_does_by_mistake(
+    seed, corner, moved, is_turned
+):
+    rng = np.random.default_rng(seed)
+    low, high = np.sort(rng.normal(size=(2, 3)) * 10 ** rng.uniform(-3, 3, 3), axis=0)
+    path = np.tri(4, 3, -1, dtype=bool)[:, rng.permutation(3)]
+    tetrahedron = np.where(path ^ (rng.uniform(size=3) < 0.5), high, low)
+    point = np.where([corner >> i & 1 for i in range(3)], high, low)
+    point[:moved] = rng.choice([low[:moved], high[:moved]]) * (1 + 2**-52)
+    M = np.diag(10 ** rng.uniform(-4, 4, 3))
+    if is_turned:  # by so little that doubles do not see it
+        M[0, 1] = M[1, 0] = 1e-17 * np.sqrt(M[0, 0] * M[1, 1])
+    side = assert_exact(M, tetrahedron, point)
+    assert side == 0 or moved > 0 or is_turned
+
+
 @given(seeds, st.booleans())
 def test_a_triangle_meets_the_open_ball_exactly_when_its_nearest_point_does(seed, on_lattice):
     rng = np.random.default_rng(seed)
     if on_lattice:  # tangent edges and planes, vertices on the sphere
+        h = rng.choice([1, 0.1])
         M = np.eye(3)
-        tetrahedron = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [2, 2, 2]], dtype=float)
-        facet = rng.integers(-1, 4, (3, 3)).astype(float)
+        tetrahedron = h * np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [2, 2, 2]])
+        facet = h * rng.integers(-1, 4, (3, 3))
     else:
         M, tetrahedron = random_frame(seed), rng.uniform(size=(4, 3))
         facet = rng.uniform(-1, 2, (3, 3))
@@ -138,6 +171,22 @@ def test_a_triangle_meets_the_open_ball_exactly_when_its_nearest_point_does(seed
         tetrahedron = tetrahedron[[0, 1, 3, 2]]
     met = _core.meets_metric_ball3(M, tetrahedron, facet)
     assert met == ExactEllipsoid(M, tetrahedron).cuts(facet)
+
+
+@pytest.mark.parametrize("h", [1.0, 0.1])
+def test_a_triangle_that_touches_the_ball_in_a_vertex_does_not_meet_it(h):
+    tetrahedron = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [2, 2, 2]])
+    met = []
+    for corner in itertools.product([0, 2], repeat=3):
+        normal = np.array(corner) - 1
+        for axis, rise in itertools.product(np.eye(3, dtype=int), (-1, 0, 1)):
+            along = np.cross(normal, axis)
+            facet = h * (
+                corner + np.array([0 * along, along, np.cross(normal, along) + rise * normal])
+            )
+            met.append(_core.meets_metric_ball3(np.eye(3), h * tetrahedron, facet))
+            assert met[-1] == ExactEllipsoid(np.eye(3), h * tetrahedron).cuts(facet)
+    assert 0 < sum(met) < len(met)
 
 
 @pytest.mark.parametrize("seed", [0, 1, 3, 4])

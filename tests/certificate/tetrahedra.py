@@ -272,6 +272,21 @@ def lattice_case(seed):
     return Mesh(points=points, cells=base.cells), metric
 
 
+def grid_case(seed):
+    """A grid of boxes whose sides are no sums of a few powers of two, with slits; a metric along
+    its axes, the same everywhere or another one at every vertex."""
+    rng = np.random.default_rng(seed)
+    base = cube(2)
+    sides = np.full(3, 0.1) if seed % 2 else np.array([0.1, 0.07, 0.3])
+    points = base.points * sides
+    metric = np.tile(np.diag(1 / sides**2), (len(points), 1, 1))
+    if seed % 3 == 2:
+        metric *= rng.uniform(0.5, 2, (len(points), 3))[:, :, None]
+    faces = np.unique(np.sort(base.cells[:, FACES].reshape(-1, 3), axis=1), axis=0)
+    slits = faces[rng.uniform(size=len(faces)) < rng.choice([0, 0.1, 0.3])]
+    return Mesh(points=points, cells=base.cells, facets=slits), metric
+
+
 def thin_case(seed, aspect):
     """Points spread evenly in one metric of the given aspect ratio, and that metric everywhere."""
     rng = np.random.default_rng(seed)

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from meshes import annulus, cube, grid, rectangle_with_jitter, square
 
+from anistar import overlap
 from anistar.mesh import Mesh
 from anistar.validation import validate
 
@@ -149,3 +150,35 @@ def test_scale_and_anisotropy_raise_no_false_alarm(scale, stretch):
 def test_a_graded_boundary_raises_no_false_alarm():
     points, cells = grid(24, 24)
     assert validate(Mesh(points=points**6 + points * 1e-6, cells=cells)) == []
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_no_facets_that_cross_or_touch_are_missed(dim):
+    rng = np.random.default_rng(dim)
+    corners = 0.3 * rng.normal(size=(60, dim, dim)) + rng.uniform(-1, 1, size=(60, 1, dim))
+    corners[:20] += (1 - 1e-3) * (corners[:20, :1] - corners[:20])  # some are small,
+    corners[20:40, -1] = corners[20:40, 0] + 1e-6 * rng.normal(size=(20, dim))  # some thin,
+    shares = rng.dirichlet(np.ones(dim), size=20)  # and some stand on others
+    corners[40:, 0] = np.einsum("ki,kij->kj", shares, corners[:20])
+    facets = np.arange(60 * dim, dtype=np.int32).reshape(60, dim)
+    points = corners.reshape(-1, dim)
+    first, second = np.triu_indices(60, 1)
+    meets = np.zeros(len(first), dtype=bool)
+    for a, b in ((first, second), (second, first)):
+        meets |= overlap._cross(points, facets[a], facets[b])
+        for column in range(dim):
+            meets |= overlap._lies_on(points, facets[a], facets[b][:, column])
+    assert meets.sum() >= 20
+    found = set(zip(*(x.tolist() for x in overlap._close_pairs(points, facets)), strict=True))
+    missed = {(int(a), int(b)) for a, b in zip(first[meets], second[meets], strict=True)} - found
+    assert missed == set()
+
+
+def test_parallel_needles_at_an_angle_are_no_pairs():
+    at = np.arange(3000) / 3000
+    corners = np.zeros((3000, 3, 3))
+    corners[:, :, 0] = at[:, None] + [0.0, 1.0, 1.0]
+    corners[:, :, 1] = -at[:, None] + [0.0, 1.0, 1.0]
+    corners[:, 2, 2] = 1e-4
+    first, _ = overlap._close_pairs(corners.reshape(-1, 3), np.arange(9000).reshape(-1, 3))
+    assert len(first) == 0

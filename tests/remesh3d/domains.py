@@ -70,6 +70,15 @@ def cube_with_sheet(n=4):
     return changed(base, facets=facets, facet_tags=tags)
 
 
+def touching_cubes(shift):
+    """Two cubes of 2^3 boxes that share what the shift leaves them to share."""
+    base = cube(2)
+    points = np.concatenate([base.points, base.points + shift])
+    cells = np.concatenate([base.cells, base.cells + base.n_points])
+    unique, inverse = np.unique(np.round(points, 9), axis=0, return_inverse=True)
+    return Mesh(points=unique, cells=inverse.ravel()[cells])
+
+
 def jittered_cube(n=4, seed=0, by=0.35):
     """The cube with inner points moved at random, as far as the cells stay positive."""
     base = cube(n)

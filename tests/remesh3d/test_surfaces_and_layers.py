@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import cube
-from remesh3d.domains import uniform
+from remesh3d.domains import touching_cubes, uniform
 from surface.smooth_shapes import bent_block
 
 from anistar import Mesh, remesh, validate
@@ -28,15 +27,6 @@ def test_layers_along_a_coarsely_sampled_cylinder_follow_it():
     assert np.abs(radius - 0.5).max() < 1e-3  # a chord of the geometry leaves it by 6e-3
     assert done.report.statistics["edge_unit"] > 0.85
     assert done.report.statistics["q_min"] > 0.05
-
-
-def touching_cubes(shift):
-    """Two cubes of 2^3 boxes that share what the shift leaves them to share."""
-    base = cube(2)
-    points = np.concatenate([base.points, base.points + shift])
-    cells = np.concatenate([base.cells, base.cells + base.n_points])
-    unique, inverse = np.unique(np.round(points, 9), axis=0, return_inverse=True)
-    return Mesh(points=unique, cells=inverse.ravel()[cells])
 
 
 @pytest.mark.parametrize("shift", [(1, 1, 0), (1, 1, 1), (1, 0, 0)], ids=["edge", "vertex", "face"])

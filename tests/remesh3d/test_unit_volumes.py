@@ -94,3 +94,16 @@ def test_frozen_facets_stay_as_they_are():
         return {tuple(sorted(map(tuple, row.tolist()))) for row in rows}
 
     assert triangles(done.mesh) == triangles(mesh)
+
+
+@pytest.mark.parametrize("aspect", [1e3, 1e5])
+def test_a_metric_thinner_than_the_domain_gets_its_layers_and_no_more(aspect):
+    mesh = cube(3)
+    n_layers = 2 * np.sqrt(aspect)  # each as wide as the cube, which is a small part of a unit
+    M = np.tile(4 * np.diag([1 / aspect, 1 / aspect, aspect]), (mesh.n_points, 1, 1))
+    done = remesh(mesh, M)
+    assert validate(done.mesh) == []
+    assert done.report.stop_reason == "finished"
+    assert 4 * n_layers / np.sqrt(2) < done.mesh.n_points < 1.5 * 4 * n_layers
+    assert done.report.statistics["edge_max"] < 3
+    assert done.report.statistics["q_min"] > 0.1 / n_layers  # stuck cells have 1e-15

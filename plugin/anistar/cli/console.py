@@ -48,10 +48,13 @@ def as_text(value: Any) -> str:
 
 
 def show_remeshed(title: str, rows: Sequence[Sequence[Any]], report: RemeshReport) -> None:
-    """Print the sizes of both meshes, and why the mesher stopped if a budget stopped it."""
+    """Print the sizes of both meshes, and why the mesher stopped if it did before its end."""
     show_table(title, ["mesh", "points", "cells"], rows)
     if not report.converged:
-        say(f"not converged: the mesher stopped at {report.stop_reason}, the mesh is valid")
+        reason = report.stop_reason
+        if reason == "finished":  # all but the insertion of points until the stars agree
+            reason = report.consistency["stop_reason"]
+        say(f"not converged: the mesher stopped at {reason}, the mesh is valid")
 
 
 @contextmanager

@@ -34,7 +34,11 @@ nb::dict certify_mesh(const Array2<double> &points, const Array2<Index> &cells,
     vertices.reserve(x.size());
     for (std::size_t v = 0; v < x.size(); ++v)
       vertices.push_back(make_vertex<d>(x[v], tensors[v]));
-    out = certify<d>(vertices, simplices, constrained, threads);
+    out = certify<d>(vertices, simplices, constrained, threads, [] {
+      nb::gil_scoped_acquire acquire;
+      if (PyErr_CheckSignals() != 0)
+        throw nb::python_error();
+    });
   }
   const std::size_t n = x.size(), m = simplices.size();
   nb::dict result;
@@ -117,8 +121,11 @@ bool meets_ball(const Array2<double> &metric, const Array2<double> &simplex,
   for (std::size_t k = 0; k < d; ++k) {
     corners[k] = &y[k];
     powers[k] = ball.power(y[k]);
-    if (ball.side(y[k], powers[k]) == Side::inside)
+    const Side side = ball.side(y[k], powers[k]);
+    if (side == Side::inside)
       return true;
+    if (side == Side::boundary)
+      powers[k] = {};
   }
   return ball.meets(corners, powers);
 }

@@ -4,6 +4,7 @@ NB_MODULE(_core, module) {
   module.doc() = "The compiled core of anistar.";
   anistar::bindings::bind_certify(module);
   anistar::bindings::bind_combination(module);
+  anistar::bindings::bind_facet_pairs(module);
   anistar::bindings::bind_gradation(module);
   anistar::bindings::bind_locator(module);
   anistar::bindings::bind_nearest(module);
