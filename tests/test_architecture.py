@@ -117,6 +117,24 @@ def test_only_adapters_and_the_demo_problem_import_adapters():
     assert set(importers_of("anistar.adapters", library)) <= {DEMO_PROBLEM}
 
 
+def test_modules_import_each_other_without_circles():
+    assert in_circles({name: {module_of(other) for other in ALL[name]} for name in ALL}) == set()
+
+
+def in_circles(graph):
+    """Nodes that reach themselves by way of others, or reach such nodes."""
+    left = {name: others & graph.keys() - {name} for name, others in graph.items()}
+    while free := {name for name, others in left.items() if not others}:
+        left = {name: others - free for name, others in left.items() if name not in free}
+    return set(left)
+
+
+def module_of(name):
+    """Return the module that a name is, or is from; None where it is not ours, or compiled."""
+    above = name.rpartition(".")[0]
+    return name if name in ALL else above if above in ALL and name != "anistar._core" else None
+
+
 def test_importing_anistar_does_not_import_the_demo():
     reached, waiting = set(), ["anistar"]
     while waiting:
@@ -165,3 +183,18 @@ def test_cgal_stays_in_source_files_of_the_core():
     found = including("CGAL/")
     assert [str(path) for path in found if path.suffix != ".cpp"] == []
     assert [str(path) for path in found if path.parts[0] == "bindings"] == []
+
+
+def included():
+    """What each concept of the core, a header with its source, includes."""
+    found = {}
+    for path in [*CORE.rglob("*.cpp"), *CORE.rglob("*.h")]:
+        names = re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE)
+        places = [folder / name for name in names for folder in (path.parent, CORE)]
+        concepts = {place.resolve().with_suffix("") for place in places if place.exists()}
+        found.setdefault(path.with_suffix(""), set()).update(concepts)
+    return found
+
+
+def test_concepts_of_the_core_include_each_other_without_circles():
+    assert in_circles(included()) == set()

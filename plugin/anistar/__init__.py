@@ -21,7 +21,8 @@ from .transfer import (
     transfer_quadrature,
 )
 from .unsteady import UnsteadyOptions, needs_adaptation, unsteady_loop
-from .validation import Violation, validate
+from .validation import validate
+from .violations import Violation
 
 __all__ = [
     "AdaptOptions",

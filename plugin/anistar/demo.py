@@ -5,9 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +13,14 @@ from numpy.typing import NDArray
 from . import pictures
 from .adapt import AdaptOptions, adapt
 from .demo_problem import EPSILON, channel, solve
-from .demo_rows import DemoRow, columns_of, order_of
+from .demo_result import Demo, DemoRow, columns_of, order_of
 from .interpolation_error import l2_norm
 from .loop import Loop, LoopOptions, Step, adapt_loop
 from .mesh import Mesh
 from .metric import MetricOptions
 from .remesh import remesh
 from .remesh_options import RemeshOptions
-from .report import attributes, write_json
+from .report import write_json
 from .series import write_series
 from .topology import cell_volumes
 from .transfer import transfer
@@ -46,39 +44,6 @@ CURVES = RemeshOptions(hausdorff_number=0.02)
 
 # Around the obstacle and the front of its wake.
 CLOSE_UP = (0.85, 1.65, 0.42, 0.82)
-
-
-@dataclass(frozen=True, eq=False)
-class Demo:
-    """What the demo did.
-
-    Attributes
-    ----------
-    rows : tuple of DemoRow
-        One for each complexity.
-    adapted_order, uniform_order : float
-        Least-squares slope of ``-log(error)`` against ``log(points) / 2``.
-    reference_points : int
-        Unknowns of the reference.
-    loop : Loop
-        The steps of the loop.
-    files : tuple of Path
-        What was written.
-    seconds : float
-        Wall time.
-    """
-
-    rows: tuple[DemoRow, ...]
-    adapted_order: float
-    uniform_order: float
-    reference_points: int
-    loop: Loop
-    files: tuple[Path, ...]
-    seconds: float
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return JSON builtins only; the keys are those of the attributes."""
-        return attributes(self)
 
 
 def stages(complexities: Sequence[float] = COMPLEXITIES) -> int:

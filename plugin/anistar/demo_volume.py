@@ -5,21 +5,17 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .adapt import AdaptOptions
-from .demo_rows import DemoRow, order_of
+from .demo_result import Demo, DemoRow, order_of
 from .interpolation_error import l2_error
 from .loop import LoopOptions, Step, adapt_loop
 from .mesh import Mesh
-from .metric import MetricOptions
 from .remesh import remesh
-from .report import attributes, write_json
+from .report import write_json
 from .series import write_series
 
 Floats = NDArray[np.float64]
@@ -31,33 +27,6 @@ REPEATS = 2
 # The front: a sphere of this radius around the origin, this steep.
 RADIUS, STEEPNESS = 0.7, 30.0
 BOXES = 8
-
-
-@dataclass(frozen=True, eq=False)
-class VolumeDemo:
-    """What the demo did.
-
-    Attributes
-    ----------
-    rows : tuple of DemoRow
-        One for each complexity.
-    adapted_order, uniform_order : float
-        Least-squares slope of ``-log(error)`` against ``log(points) / 3``.
-    files : tuple of Path
-        What was written.
-    seconds : float
-        Wall time.
-    """
-
-    rows: tuple[DemoRow, ...]
-    adapted_order: float
-    uniform_order: float
-    files: tuple[Path, ...]
-    seconds: float
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return JSON builtins only; the keys are those of the attributes."""
-        return attributes(self)
 
 
 def front(points: Floats) -> Floats:
@@ -92,7 +61,7 @@ def run_volume_demo(
     *,
     complexities: Sequence[float] = COMPLEXITIES,
     progress: Progress = lambda stage: None,
-) -> VolumeDemo:
+) -> Demo:
     """Run the demo and leave meshes, fields and the report in a folder.
 
     Parameters
@@ -112,11 +81,7 @@ def run_volume_demo(
     loop = adapt_loop(
         lambda mesh, fields: {"u": front(mesh.points)},
         coarse,
-        LoopOptions(
-            adapt=AdaptOptions(metric=MetricOptions()),
-            complexities=targets,
-            max_iterations=len(targets),
-        ),
+        LoopOptions(complexities=targets, max_iterations=len(targets)),
         callback=lambda step: progress(f"adapted to {step.complexity or 0:g}") and None,
     )
     steps = loop.steps[REPEATS::REPEATS]
@@ -128,10 +93,12 @@ def run_volume_demo(
         place / "front.pvd", ((step.mesh, step.fields) for step in (loop.steps[0], *steps))
     )
     progress("files")
-    demo = VolumeDemo(
+    demo = Demo(
         rows=tuple(rows),
         adapted_order=order_of(rows, "adapted", dim=3),
         uniform_order=order_of(rows, "uniform", dim=3),
+        reference_points=None,
+        loop=loop,
         files=(*files, place / "report.json"),
         seconds=time.perf_counter() - started,
     )

@@ -9,8 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import validation
 from .topology import FacetTable, Float, Int, facet_table
+from .violations import (
+    Violation,
+    cell_violations,
+    constraint_violations,
+    needs_facet,
+    side_violations,
+)
 
 # Optional arrays are never None once constructed, so the fields keep their array types.
 _NOT_GIVEN: Any = None
@@ -79,12 +85,12 @@ class Mesh:
         points = _as_points(self.points)
         cells = _as_cells(self.cells, points.shape[1])
         arrays = _constraints(self, points.shape[1], len(cells))
-        _raise_first(validation.cell_violations(points, cells))
+        _raise_first(cell_violations(points, cells))
         table = facet_table(cells, len(points))
-        _raise_first(validation.side_violations(points, cells, table))
+        _raise_first(side_violations(points, cells, table))
         given: dict[str, Any] = {"points": points, "cells": cells, **arrays}
         _raise_first(
-            validation.constraint_violations(
+            constraint_violations(
                 points, cells, arrays["facets"], arrays["edges"], arrays["corners"], table
             )
         )
@@ -148,7 +154,7 @@ class Mesh:
         )
 
 
-def _raise_first(violations: Iterable[validation.Violation]) -> None:
+def _raise_first(violations: Iterable[Violation]) -> None:
     for violation in violations:
         raise ValueError(violation.message)
 
@@ -238,7 +244,7 @@ def _complete_facets(arrays: dict[str, Any], table: FacetTable) -> None:
     rows = table.find(arrays["facets"])
     boundary = table.counts[rows] == 1
     arrays["facets"][boundary] = table.facets[rows[boundary]]
-    needed = validation.needs_facet(arrays["cell_tags"], table)
+    needed = needs_facet(arrays["cell_tags"], table)
     needed[rows] = False
     missing = table.facets[needed]
     arrays["facets"] = np.concatenate([arrays["facets"], missing])

@@ -1,7 +1,5 @@
 #include "agreement.h"
 
-#include "relocator.h"
-
 #include <algorithm>
 #include <memory>
 

@@ -83,4 +83,10 @@ struct Geometry {
 [[nodiscard]] Geometry make_geometry(const GeometryInput &input,
                                      const Projection *projection);
 
+/// The parameter at which the curve is equally far from the two ends of the edge.
+[[nodiscard]] double middle(const Curve &curve, double t0, double t1);
+
+/// Distance of the curve from the chord over [t0, t1], relative to the chord's length.
+[[nodiscard]] double relative_sagitta(const Curve &curve, double t0, double t1);
+
 } // namespace anistar

@@ -108,37 +108,6 @@ bool segments_meet(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p,
 
 } // namespace
 
-double middle(const Curve &curve, double t0, double t1) {
-  const Vector<2> a = curve.at(t0), b = curve.at(t1);
-  double low = t0, high = t1;
-  for (int step = 0; step < 30; ++step) {
-    const double t = .5 * (low + high);
-    const Vector<2> x = curve.at(t);
-    ((x - a).squaredNorm() < (x - b).squaredNorm() ? low : high) = t;
-  }
-  return .5 * (low + high);
-}
-
-double relative_sagitta(const Curve &curve, double t0, double t1) {
-  const Vector<2> a = curve.at(t0), chord = curve.at(t1) - a;
-  const double length = chord.norm();
-  if (!(length > 0))
-    return std::numeric_limits<double>::infinity();
-  double worst = 0;
-  const auto consider = [&](double t) {
-    const Vector<2> r = curve.at(t) - a;
-    const double along = r.dot(chord) / length;
-    const double past = std::max({0., -along, along - length});
-    worst = std::max(worst, std::hypot(cross(chord, r) / length, past) / length);
-  };
-  for (double k = 1; k < 4; ++k)
-    consider(t0 + (t1 - t0) * k / 4);
-  // an edge over many points of the geometry is compared with all of them
-  for (double t = std::floor(t0) + 1; t < t1; ++t)
-    consider(t);
-  return worst;
-}
-
 Outline make_outline(const Geometry &geometry, const Background<2> &background,
                      double hausdorff, const Monitor &monitor) {
   Outline outline;

@@ -4,7 +4,6 @@
 #include "background.h"
 #include "curves.h"
 #include "monitor.h"
-#include "protection.h"
 #include "triangulation.h"
 
 #include <span>
@@ -40,12 +39,6 @@ struct Outline {
 [[nodiscard]] Outline make_outline(const Geometry &geometry,
                                    const Background<2> &background, double hausdorff,
                                    const Monitor &monitor);
-
-/// The parameter at which the curve is equally far from the two ends of the edge.
-[[nodiscard]] double middle(const Curve &curve, double t0, double t1);
-
-/// Distance of the curve from the chord over [t0, t1], relative to the chord's length.
-[[nodiscard]] double relative_sagitta(const Curve &curve, double t0, double t1);
 
 /// Brings edges nearer to the geometry's own polyline, which is valid: an edge that
 /// spans points of the geometry is split at one, another becomes a piece of a straight

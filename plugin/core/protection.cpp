@@ -1,7 +1,5 @@
 #include "protection.h"
 
-#include "outline.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

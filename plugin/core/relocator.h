@@ -1,7 +1,7 @@
 #pragma once
 // What agreement does at one vertex: it is moved to the best of some trial places.
 
-#include "agreement.h"
+#include "flips.h"
 #include "protecting_ball.h"
 #include "relocation.h"
 
@@ -13,6 +13,19 @@ namespace anistar {
 /// Passes over the vertices at disagreeing edges; the radius of the trial places grows
 /// from one to the next.
 inline constexpr int max_agreement_passes = 10;
+
+struct AgreementCounts {
+  std::size_t edges_before = 0, edges_after = 0; ///< on which four metrics disagree
+  std::size_t trials = 0, moves = 0;
+
+  AgreementCounts &operator+=(const AgreementCounts &other) {
+    edges_before += other.edges_before;
+    edges_after += other.edges_after;
+    trials += other.trials;
+    moves += other.moves;
+    return *this;
+  }
+};
 
 /// Moves vertices of a range of the mesh, one after another; an object to a thread.
 class Relocator {

@@ -1,7 +1,7 @@
 #pragma once
 // What the facets and edges of a mesh are: patches, ridges and corners.
 
-#include "surface_shape.h"
+#include "surface_input.h"
 
 #include <functional>
 

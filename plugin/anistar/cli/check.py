@@ -12,7 +12,8 @@ from ..mesh import Mesh
 from ..metric import check_metric
 from ..quality import quality
 from ..topology import Float
-from ..validation import Violation, validate
+from ..validation import validate
+from ..violations import Violation
 from . import console
 from .files import writable, writable_file
 

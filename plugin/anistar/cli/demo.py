@@ -9,8 +9,7 @@ from . import console
 from .options import numbers
 
 if TYPE_CHECKING:
-    from ..demo import Demo
-    from ..demo_volume import VolumeDemo
+    from ..demo_result import Demo
 
 SUMMARY = "adapt the flow of heat through a channel, and compare with uniform meshes"
 EXAMPLE = "anistar demo -o anistar-demo"
@@ -61,7 +60,7 @@ def _plane_demo(arguments: argparse.Namespace) -> Demo:
         return run_demo(arguments.output, complexities=complexities, progress=advance)
 
 
-def _volume_demo(arguments: argparse.Namespace) -> VolumeDemo:
+def _volume_demo(arguments: argparse.Namespace) -> Demo:
     from ..demo_volume import COMPLEXITIES, run_volume_demo, stages
 
     complexities = arguments.complexities or COMPLEXITIES

@@ -13,7 +13,7 @@ from ..errors import FormatError
 from ..fields import Field, Kind
 from ..mesh import Mesh
 from ..metric.tensor_orders import from_components
-from ..validation import point_violations, volume_signs
+from ..violations import point_violations, volume_signs
 from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh
 
 _log = logging.getLogger(__name__)

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
+from .loop import Loop
+from .report import attributes
 from .study import observed_order
 
 
@@ -32,6 +36,39 @@ class DemoRow:
     def gain(self) -> float:
         """How many times smaller the error is on the adapted mesh."""
         return self.uniform_error / self.adapted_error
+
+
+@dataclass(frozen=True, eq=False)
+class Demo:
+    """What a demo did.
+
+    Attributes
+    ----------
+    rows : tuple of DemoRow
+        One for each complexity.
+    adapted_order, uniform_order : float
+        Least-squares slope of ``-log(error)`` against ``log(points) / d``.
+    reference_points : int or None
+        Unknowns of the reference; None where the solution is known.
+    loop : Loop
+        The steps of the loop.
+    files : tuple of Path
+        What was written.
+    seconds : float
+        Wall time.
+    """
+
+    rows: tuple[DemoRow, ...]
+    adapted_order: float
+    uniform_order: float
+    reference_points: int | None
+    loop: Loop
+    files: tuple[Path, ...]
+    seconds: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins only; the keys are those of the attributes."""
+        return attributes(self)
 
 
 def columns_of(rows: Sequence[DemoRow], kind: str) -> tuple[list[int], list[float]]:
