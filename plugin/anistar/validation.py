@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,9 @@ ROUND_OFF = 16 * np.finfo(np.float64).eps
 
 # The checks multiply up to four lengths, which must stay below the largest double.
 LARGEST = 1e75
+
+# Cells or facets that are looked at together.
+CHUNK = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -159,15 +162,26 @@ def cell_violations(points: Float, cells: Int) -> Iterator[Violation]:
 def volume_violations(points: Float, cells: Int) -> Iterator[Violation]:
     """Yield the cells whose volume is negative, or zero up to round-off."""
     flat, inverted = volume_signs(points, cells)
-    volumes = cell_volumes(points, cells)
     for kind, bad, word in (("zero_volume", flat, "zero"), ("inverted", inverted, "negative")):
         if bad.any():
-            value = volumes[np.argmax(bad)]
+            at = int(np.argmax(bad))
+            value = cell_volumes(points, cells[at : at + 1])[0]
             yield from _violation(kind, bad, f"cell {{i}} has {word} volume: {value:.3g}")
 
 
 def volume_signs(points: Float, cells: Int) -> tuple[Bool, Bool]:
     """Return the (m,) masks of the cells of zero volume up to round-off, and of the inverted."""
+    signs = [_volume_signs(points, some) for some in _chunks(cells)]
+    flat, inverted = (np.concatenate(masks) for masks in zip(*signs, strict=True))
+    return flat, inverted
+
+
+def _chunks(rows: NDArray[Any]) -> list[NDArray[Any]]:
+    """Cut an array into parts of bounded length: what is computed of a mesh outweighs it."""
+    return np.array_split(rows, len(rows) // CHUNK + 1)
+
+
+def _volume_signs(points: Float, cells: Int) -> tuple[Bool, Bool]:
     determinants = cell_determinants(points, cells)
     scale = np.ones(len(cells))
     for i in range(1, cells.shape[1]):
@@ -204,10 +218,10 @@ def _same_side(cells: Int, table: FacetTable) -> Bool:
     """Tell which facets are seen in the same sense, not opposite ones, by their two cells."""
     width = cells.shape[1] - 1
     same = np.zeros(len(table.counts), dtype=bool)
-    rows = np.flatnonzero(table.counts > 1)
-    first = table.facets[rows]
-    second = cells[table.cells[rows, 1][:, None], LOCAL_FACETS[width][table.local[rows, 1]]]
-    same[rows] = _turn_alike(first, second)
+    for rows in _chunks(np.flatnonzero(table.counts > 1)):
+        first = table.facets[rows]
+        second = cells[table.cells[rows, 1][:, None], LOCAL_FACETS[width][table.local[rows, 1]]]
+        same[rows] = _turn_alike(first, second)
     return same
 
 
