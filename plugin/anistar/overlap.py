@@ -23,7 +23,7 @@ from .topology import Bool, Float, Int, Long, RowKeys, facet_normals
 # round-off of the tests below, far below any gap that a double can resolve usefully.
 CONTACT = 1e-12
 # Facets handled at a time when candidate pairs are listed; bounds the memory.
-CHUNK = 1024
+CHUNK = 4096
 
 
 def coincident_points(points: Float, facets: Int) -> tuple[int, int] | None:
