@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import exp, log
 
 import numpy as np
+import scipy  # loads scipy.optimize, 9 MB, when it is first used
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from .algebra import absolute, compose, eigh
 from .bounds import bounded
@@ -93,7 +93,7 @@ def dwr_metric(
             f"{complexity(mesh, scaled(start - LARGEST_STEP)):g}"
         )
     # h_max can only add to the complexity: up to round-off, the factor is at most that of `base`
-    found: float = brentq(excess, start - LARGEST_STEP, start + 1.0, xtol=1e-10)
+    found: float = scipy.optimize.brentq(excess, start - LARGEST_STEP, start + 1.0, xtol=1e-10)
     return scaled(found)
 
 

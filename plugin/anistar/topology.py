@@ -109,7 +109,7 @@ def facets_of_cells(cells: Int) -> Int:
         Row ``(d + 1) * c + i`` is the facet of cell `c` opposite its vertex `i`.
     """
     dim = cells.shape[1] - 1
-    return np.ascontiguousarray(cells[:, LOCAL_FACETS[dim]].reshape(-1, dim))
+    return np.take(cells, LOCAL_FACETS[dim], axis=1).reshape(-1, dim)
 
 
 def facet_table(cells: Int, n_points: int) -> FacetTable:
@@ -122,26 +122,28 @@ def facet_table(cells: Int, n_points: int) -> FacetTable:
     n_points : int
         Number of points.
     """
-    width = cells.shape[1]
+    # the rows are several times as large as the cells: they are not kept while keys are sorted
+    width = np.int32(cells.shape[1])
     rows = facets_of_cells(cells)
     encoder = RowKeys(rows, n_points)
     keys = encoder.encode(rows)
-    order = np.argsort(keys, kind="stable")
-    ordered = keys[order]
-    del keys  # as large as the cells
-    starts = np.flatnonzero(np.r_[True, ordered[1:] != ordered[:-1]][: len(ordered)])
-    counts = np.diff(np.r_[starts, len(ordered)])
-    sides = np.full((len(starts), 2), -1, dtype=np.int64)
+    del rows
+    order = np.argsort(keys, kind="stable").astype(np.int32)
+    keys = keys[order]
+    starts = np.flatnonzero(np.r_[True, keys[1:] != keys[:-1]][: len(keys)])
+    counts = np.diff(np.r_[starts, len(keys)])
+    keys = keys[starts]
+    sides = np.full((len(starts), 2), -1, dtype=np.int32)
     sides[:, 0] = order[starts]
     shared = counts > 1
     sides[shared, 1] = order[starts[shared] + 1]
     outside = sides < 0
     return FacetTable(
-        facets=rows[sides[:, 0]],
-        cells=np.where(outside, -1, sides // width).astype(np.int32),
-        local=np.where(outside, -1, sides % width).astype(np.int32),
+        facets=facets_of_cells(cells)[sides[:, 0]],
+        cells=np.where(outside, np.int32(-1), sides // width),
+        local=np.where(outside, np.int32(-1), sides % width),
         counts=counts,
-        _keys=ordered[starts],
+        _keys=keys,
         _encoder=encoder,
     )
 
@@ -182,11 +184,16 @@ def unique_edges(simplices: Int, n_points: int) -> Int:
 def cell_determinants(points: Float, cells: Int) -> Float:
     """Return the (m,) determinants of the edge vectors: `d!` times the signed volumes."""
     origin = points[cells[:, 0]]
-    legs = [points[cells[:, i]] - origin for i in range(1, cells.shape[1])]
+    legs = [points[cells[:, i]] for i in range(1, cells.shape[1])]
+    for leg in legs:
+        leg -= origin
     if len(legs) == 2:
         (ax, ay), (bx, by) = legs[0].T, legs[1].T
         return np.asarray(ax * by - ay * bx)
-    return np.asarray(np.einsum("ij,ij->i", legs[0], np.cross(legs[1], legs[2])))
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (leg.T for leg in legs)
+    return np.asarray(
+        ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+    )
 
 
 def cell_volumes(points: Float, cells: Int) -> Float:

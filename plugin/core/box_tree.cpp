@@ -1,19 +1,8 @@
 #include "box_tree.h"
 
-#include "hilbert.h"
-
 namespace anistar {
 
-template <std::size_t d>
-BoxTree<d>::BoxTree(const std::vector<Box<d>> &boxes, int threads) {
-  std::vector<Vector<d>> centres(boxes.size());
-  for (std::size_t k = 0; k < boxes.size(); ++k)
-    centres[k] = .5 * (boxes[k].low + boxes[k].high);
-  items_ = hilbert_order<d>(centres, threads);
-  item_boxes_.resize(boxes.size());
-  for (std::size_t k = 0; k < items_.size(); ++k)
-    item_boxes_[k] = boxes[static_cast<std::size_t>(items_[k])];
-
+template <std::size_t d> void BoxTree<d>::make_nodes() {
   std::size_t n_leaves = 1;
   while (n_leaves * leaf_size < items_.size())
     n_leaves *= 2;

@@ -3,6 +3,7 @@
 // primitives only in the releases that we support; this one serves both dimensions.)
 
 #include "adjacency.h"
+#include "hilbert.h"
 #include "tensor.h"
 
 #include <limits>
@@ -35,7 +36,11 @@ template <std::size_t d> struct Box {
 /// 2k+2, so there are no links to store.
 template <std::size_t d> class BoxTree {
 public:
-  explicit BoxTree(const std::vector<Box<d>> &boxes, int threads = 1);
+  explicit BoxTree(const std::vector<Box<d>> &boxes, int threads = 1)
+      : BoxTree(
+            boxes.size(), [&](std::size_t k) { return boxes[k]; }, threads) {}
+  /// The box of item k < n is box_of(k).
+  template <class BoxOf> BoxTree(std::size_t n, BoxOf box_of, int threads = 1);
 
   /// Calls visit(item, bound) for boxes nearer to p than the bound, nearest subtree
   /// first; `visit` returns the squared distance beyond which boxes are of no interest.
@@ -63,6 +68,8 @@ private:
   std::vector<Box<d>> item_boxes_;
   std::vector<Box<d>> nodes_;
   std::size_t first_leaf_ = 0;
+
+  void make_nodes();
 
   template <class Visit>
   bool descend_meeting(std::size_t node, const Box<d> &query, Visit &visit) const {
@@ -101,5 +108,21 @@ private:
       descend_nearest(far, p, bound, visit);
   }
 };
+
+template <std::size_t d>
+template <class BoxOf>
+BoxTree<d>::BoxTree(std::size_t n, BoxOf box_of, int threads) {
+  std::vector<Vector<d>> centres(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Box<d> box = box_of(k);
+    centres[k] = .5 * (box.low + box.high);
+  }
+  items_ = hilbert_order<d>(centres, threads);
+  centres = {}; // the boxes take their place
+  item_boxes_.reserve(n);
+  for (Index item : items_)
+    item_boxes_.push_back(box_of(static_cast<std::size_t>(item)));
+  make_nodes();
+}
 
 } // namespace anistar

@@ -14,16 +14,6 @@ namespace {
 constexpr int max_walk_steps = 64;
 
 template <std::size_t d>
-std::vector<Box<d>> cell_boxes(std::span<const Vector<d>> points,
-                               std::span<const Cell<d>> cells) {
-  std::vector<Box<d>> boxes(cells.size());
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    for (Index v : cells[c])
-      boxes[c].extend(points[static_cast<std::size_t>(v)]);
-  return boxes;
-}
-
-template <std::size_t d>
 std::vector<HalfFacet> boundary_facets(const std::vector<Neighbours<d>> &neighbours) {
   std::vector<HalfFacet> out;
   for (std::size_t c = 0; c < neighbours.size(); ++c)
@@ -54,8 +44,13 @@ Locator<d>::Locator(std::span<const Vector<d>> points, std::span<const Cell<d>> 
       neighbours_(adjacency<d>(cells, points.size())), threads_(threads) {}
 
 template <std::size_t d> const BoxTree<d> &Locator<d>::cell_tree() const {
-  return cell_tree_.get(
-      [&] { return BoxTree<d>(cell_boxes<d>(points_, cells_), threads_); });
+  const auto box_of = [&](std::size_t c) {
+    Box<d> box;
+    for (Index v : cells_[c])
+      box.extend(points_[static_cast<std::size_t>(v)]);
+    return box;
+  };
+  return cell_tree_.get([&] { return BoxTree<d>(cells_.size(), box_of, threads_); });
 }
 
 template <std::size_t d>

@@ -160,6 +160,9 @@ public:
       m_[k][n_] = m.entries[k];
     ++n_;
   }
+  /// Whether all cells are positive, up to round-off, with the vertex at x: elsewhere
+  /// it needs no metric.
+  [[nodiscard]] bool are_positive(const Vector<3> &x) const;
   /// Qualities with the vertex at x.
   void evaluate(const Vertex<3> &x);
   [[nodiscard]] double minimum() const { return minimum_; }

@@ -31,17 +31,16 @@ void star_of(const Triangulation<2> &mesh, Index v, std::vector<HalfFacet> &star
 
 namespace {
 
-/// With some room left: an array that must grow is for a while there three times.
+/// In place: new arrays of ever other sizes would leave holes in the memory.
 template <class T>
 void permute(std::vector<T> &values, const std::vector<Index> &order, int threads) {
-  std::vector<T> sorted;
-  sorted.reserve(order.size() + order.size() / 8);
-  sorted.resize(order.size());
+  std::vector<T> sorted(order.size());
   parallel_ranges(order.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       sorted[k] = values[static_cast<std::size_t>(order[k])];
   });
-  values = std::move(sorted);
+  values.resize(order.size());
+  std::copy(sorted.begin(), sorted.end(), values.begin());
 }
 
 std::vector<Index> inverse(const std::vector<Index> &order, std::size_t n) {

@@ -206,7 +206,8 @@ void take_along(std::vector<T> &values, const std::vector<Index> &rank, std::siz
   for (std::size_t v = 0; v < rank.size(); ++v)
     if (rank[v] != none)
       moved[static_cast<std::size_t>(rank[v])] = values[v];
-  values = std::move(moved);
+  values.resize(n);
+  std::copy(moved.begin(), moved.end(), values.begin());
 }
 
 } // namespace

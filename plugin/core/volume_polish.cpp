@@ -117,8 +117,9 @@ bool VolumePasses::polish_step(Index v, const Vector<3> &step, double floor,
   Vertex<3> &here = volume_.mesh.vertices[i];
   const Vector<3> x =
       volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
-  if (volume_.feature(v) != 3 &&
-      !keeps_surfaces(volume_, star_, v, x, hausdorff_number_))
+  if (!shapes_.are_positive(x) ||
+      (volume_.feature(v) != 3 &&
+       !keeps_surfaces(volume_, star_, v, x, hausdorff_number_)))
     return false;
   Index at = volume_.mesh.background_cell[i];
   const Vertex<3> moved = volume_.background.vertex(x, at);

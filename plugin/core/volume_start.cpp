@@ -61,6 +61,19 @@ private:
   }
 };
 
+/// Room for a few more vertices and cells: an array that grows by itself doubles, and
+/// leaves a hole where it was.
+void reserve_room(Volume &volume, std::size_t n_vertices, std::size_t n_cells) {
+  const auto reserve = [](std::size_t n, auto &...arrays) {
+    (arrays.reserve(n + n / 8), ...);
+  };
+  Triangulation<3> &mesh = volume.mesh;
+  reserve(n_vertices, mesh.vertices, mesh.feature, mesh.vertex_cell,
+          mesh.background_cell, volume.support, volume.vertex_clock);
+  reserve(n_cells, mesh.cells, mesh.neighbours, mesh.constraints, mesh.region,
+          volume.quality, volume.walled, volume.cell_clock);
+}
+
 void add_cells(Volume &volume, const VolumeInput &input,
                const std::vector<Index> &facet_patch) {
   Triangulation<3> &mesh = volume.mesh;
@@ -140,6 +153,7 @@ Volume make_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>>
                                          std::move(projection)));
   volume.surface.match(input.surface, features);
   const std::size_t n = input.surface.points.size();
+  reserve_room(volume, n, input.cells.size());
   for (std::size_t v = 0; v < n; ++v)
     volume.add_vertex(make_vertex<3>(input.surface.points[v], metric[v]),
                       features.dimension[v], features.support[v], none);

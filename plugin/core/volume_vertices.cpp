@@ -177,6 +177,8 @@ bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double
   Vertex<3> &here = volume_.mesh.vertices[i];
   const Vector<3> x =
       volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
+  if (!shapes_.are_positive(x))
+    return false;
   Index at = volume_.mesh.background_cell[i];
   const Vertex<3> moved = volume_.background.vertex(x, at);
   shapes_.evaluate(moved);
