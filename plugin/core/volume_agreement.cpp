@@ -17,10 +17,10 @@ constexpr double least_reduction = .05;
 constexpr double radii[] = {.3, .15, .07};
 /// Every so many rounds collapses and insertions are tried.
 constexpr int repair_period = 5;
-/// From this round on, in every second one, vertices at a facet that resists wander, by
-/// this much.
+/// From this round on vertices at a facet that resists wander, by this much: where
+/// metrics vary a lot the rest is stuck without.
 constexpr int first_wandering = 3;
-constexpr double wandering_radius = .2;
+constexpr double wandering_radius = .1;
 /// A bound on the trial places; the metrics that could be certified, but for a few
 /// cells, took a third of it.
 constexpr std::size_t trials_per_cell = 20;
@@ -173,7 +173,7 @@ private:
       if (!still_fails(h))
         return;
     }
-    if (round >= first_wandering && round % 2 == 1)
+    if (round >= first_wandering)
       counts_.moves += relocation_.wander(vertices[first], wandering_radius, random);
   }
 
