@@ -14,7 +14,10 @@ namespace {
 
 constexpr int max_rounds = 200;
 /// Rounds without fewer failing cells after which the run has stalled.
-constexpr int patience = 16;
+constexpr int patience = 16, patience_with_last = 64;
+/// So many failing cells are the last ones: all facets may be in order then, and only
+/// the certificate shows which moves help. Rounds cost little.
+constexpr std::size_t last_failing = 20;
 /// While a round leaves less than this part of the failing cells, vertices are moved
 /// wherever the cost goes down; then only where fewer facets fail, and points come in.
 constexpr double good_progress = .95;
@@ -24,10 +27,13 @@ constexpr double any_progress = .995;
 /// for what it costs. More places are tried only when at most so many cells fail.
 constexpr double many_failing = .3;
 constexpr std::size_t few_failing = 100;
-/// What is stuck goes through agreement and the star check again, every so many rounds
-/// that brought nothing: they swap facets of surfaces and remove vertices, which the
-/// rules do not.
-constexpr int agreement_period = 5;
+/// While at most this part of the cells fails, what the rules hardly improve goes
+/// through agreement and the star check again, that many rounds later at the earliest:
+/// they swap facets of surfaces, remove vertices and let them wander, which the rules
+/// do not, and a facet costs them far less than a cavity. With more patience than the
+/// first time.
+constexpr double agreeable = .05;
+constexpr int agreement_period = 5, agreement_persistence = 5;
 /// The clock is looked at after so many bad cells.
 constexpr std::size_t cells_between_looks = 32;
 /// New vertices keep this distance from the others in their own metric (packing).
@@ -49,22 +55,27 @@ struct Effort {
 
 /// How the failing cells became fewer.
 struct Progress {
-  double failing;       ///< part of the cells
-  double before = 1;    ///< in the round before
-  double reference = 1; ///< when the count below was reset
-  int since_best = 0;   ///< rounds that brought nothing
+  double failing;                         ///< part of the cells
+  double before = 1;                      ///< in the round before
+  double reference = 1;                   ///< when the count below was reset
+  int since_best = 0;                     ///< rounds that brought nothing
+  int since_agreement = agreement_period; ///< rounds
 
   void note(double now) {
     before = std::exchange(failing, now);
     ++since_best;
+    ++since_agreement;
     if (failing < any_progress * reference) {
       reference = failing;
       since_best = 0;
     }
   }
-  [[nodiscard]] bool asks_for_agreement(std::size_t n_bad) const {
-    return n_bad <= few_failing &&
-           since_best % agreement_period == agreement_period - 1;
+  [[nodiscard]] bool asks_for_agreement() {
+    const bool asks = failing <= agreeable && failing > good_progress * before &&
+                      since_agreement >= agreement_period;
+    if (asks)
+      since_agreement = 0;
+    return asks;
   }
   [[nodiscard]] Effort effort(std::size_t n_bad) const {
     const bool is_stuck = since_best > 3 && n_bad <= few_failing;
@@ -348,7 +359,8 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
       counts.stop = "max_rounds";
     else if (static_cast<double>(volume.n_vertices()) > most)
       counts.stop = "max_growth";
-    else if (progress.since_best > patience)
+    else if (progress.since_best >
+             (bad.size() <= last_failing ? patience_with_last : patience))
       counts.stop = "stalled";
     else if (!monitor.keep_going(volume.n_vertices(), 0) ||
              !monitor.look(double(counts.rounds) / max_rounds))
@@ -357,14 +369,15 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
       break;
     const std::uint32_t since = ++volume.clock;
     const std::uint64_t round_seed = seed + 1 + std::uint64_t(counts.rounds);
-    const bool agreeing = progress.asks_for_agreement(bad.size());
+    const bool agreeing = progress.asks_for_agreement();
     if (agreeing)
-      counts.moves +=
-          agree_volume(volume, monitor, hausdorff_number, round_seed, threads).moves;
+      counts.moves += agree_volume(volume, monitor, hausdorff_number, round_seed,
+                                   threads, agreement_persistence)
+                          .moves;
     else
       rounds.treat(bad, counts.rounds, progress.effort(bad.size()));
     renew(volume, since, threads, known);
-    if (agreeing)
+    if (agreeing || bad.size() <= last_failing)
       counts.moves += mend_stars(volume, monitor, hausdorff_number, round_seed, known);
     progress.note(failing_fraction(volume.mesh, known.bits));
     if (progress.failing < best->failing)
@@ -374,6 +387,7 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
     known = std::move(best->known);
     restore(volume, std::move(*best));
   }
+  counts.ln_gamma_p90 = ln_gamma_p90(volume.mesh, known.bits);
   return counts;
 }
 
