@@ -53,7 +53,9 @@ class RemeshReport:
         ``done``, ``off``, or ``skipped:`` and why; in 3D also what was left when it stalled.
     consistency : dict
         Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
-        ``inconsistency``, ``boundary``), ``rounds`` and ``stop_reason``.
+        ``inconsistency``, ``boundary``), ``rounds``, ``stop_reason``, and
+        ``ln_gamma_p90``: 10 % of the edges of the cells that still fail have a larger ln gamma
+        between the metrics at their ends (0 when none fails). Compare it with `distortion`.
     simplex_ok, star_ok : float or None
         Certified fractions of the cells and of the stars (see `certify`); None when the
         agreement phase was off or a budget had stopped the run, and in 3D, where the

@@ -249,6 +249,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
     w.on_curves = std::move(best);
     check = std::move(best_check);
   }
+  counts.ln_gamma_p90 = ln_gamma_p90(w.mesh, check.bits);
   return counts;
 }
 

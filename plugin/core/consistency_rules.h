@@ -3,6 +3,7 @@
 // for meshes of triangles and of tetrahedra.
 
 #include "certificate.h"
+#include "statistics.h"
 #include "triangulation.h"
 
 #include <string>
@@ -32,6 +33,7 @@ struct ConsistencyCounts {
   std::size_t boundary = 0; ///< splits at encroached constrained facets
   std::size_t moves = 0;    ///< of vertices, in 3D
   int rounds = 0;
+  double ln_gamma_p90 = 0; ///< of the edges of the cells that fail in the end
   std::string stop; ///< consistent, stalled, max_growth, max_rounds, or the monitor's
 
   void add(Rule rule) {
@@ -53,6 +55,18 @@ struct ConsistencyCounts {
     }
   }
 };
+
+/// The distortion where cells fail: 10 % of their edges have a larger ln gamma; 0 when
+/// none fails.
+template <std::size_t d>
+[[nodiscard]] double ln_gamma_p90(const Triangulation<d> &mesh,
+                                  const std::vector<std::uint8_t> &bits) {
+  std::vector<Cell<d>> failing;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    if (mesh.is_alive(static_cast<Index>(c)) && bits[c] != all_vertices<d>)
+      failing.push_back(mesh.cells[c]);
+  return failing.empty() ? 0 : distortion_quantiles(mesh.vertices, failing, 1).p90;
+}
 
 /// Certified fractions of a mesh.
 struct CertifiedFractions {

@@ -64,7 +64,7 @@ struct AgreementCost {
   double shortfall = 0; ///< of qualities below `poor`
   double nearness = 0;  ///< of margins above `-near`
 
-  static constexpr double near = .02, poor = .35;
+  static constexpr double near = .01, poor = .35;
 
   void add_facet(double margin) {
     failing += margin > 0;

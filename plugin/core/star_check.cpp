@@ -45,7 +45,7 @@ private:
     for (HalfFacet h : relocation_.star())
       cells.push_back(h.cell());
     failures_.surround(cells);
-    const int failing = failures_.count(cells);
+    const int failing = failures_.count();
     CounterRandom random(seed_ ^ 0x5741u, static_cast<std::uint64_t>(v),
                          static_cast<std::uint64_t>(round));
     const EllipseSampler ellipse(from.vertex.M);
@@ -57,7 +57,8 @@ private:
       relocation_.put(relocation_.at(x));
       const StarScore found = relocation_.score();
       if (found.keeps(before) && found.disagreeing <= before.disagreeing &&
-          failures_.count(cells, failing) < failing) {
+          failures_.count_moved(v, failing) < failing) {
+        failures_.forget();
         for (HalfFacet h : relocation_.star())
           changed_.push_back(h.cell());
         return true;

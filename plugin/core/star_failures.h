@@ -43,38 +43,81 @@ public:
     return found;
   }
 
-  /// Adds three layers around the cells of a star: those whose ball can reach its
-  /// vertex, but for accidents that the next round finds.
-  void surround(std::vector<Index> &cells) {
+  /// Takes up the answers for the mesh as it is.
+  void know(const std::vector<std::uint8_t> &bits) { known_ = bits; }
+
+  /// Takes up the cells whose answer a move of one vertex can change: its star and
+  /// three layers around it, but for accidents that the next round finds.
+  void surround(std::span<const Index> star) {
     ++epoch_;
-    for (Index c : cells)
+    n_star_ = star.size();
+    cells_.assign(star.begin(), star.end());
+    for (Index c : cells_)
       seen_[static_cast<std::size_t>(c)] = epoch_;
     std::size_t begin = 0;
     for (int layer = 0; layer < 3; ++layer)
-      for (const std::size_t end = cells.size(); begin < end; ++begin)
+      for (const std::size_t end = cells_.size(); begin < end; ++begin)
         for (std::size_t i = 0; i <= d; ++i) {
-          const HalfFacet beyond = mesh_.opposite(HalfFacet(cells[begin], i));
+          const HalfFacet beyond = mesh_.opposite(HalfFacet(cells_[begin], i));
           if (beyond.exists() &&
               std::exchange(seen_[static_cast<std::size_t>(beyond.cell())], epoch_) !=
                   epoch_)
-            cells.push_back(beyond.cell());
+            cells_.push_back(beyond.cell());
         }
   }
 
-  /// In how many stars the cells are missing; not counted further than to `enough`.
-  [[nodiscard]] int count(const std::vector<Index> &cells,
-                          int enough = std::numeric_limits<int>::max()) {
+  /// In how many stars these cells are missing.
+  [[nodiscard]] int count() {
     int n = 0;
-    for (std::size_t k = 0; k < cells.size() && n < enough; ++k)
-      n += int(d + 1) - std::popcount(static_cast<unsigned>(test_.bits(cells[k])));
+    for (Index c : cells_)
+      n += missing(known(c));
     return n;
+  }
+  /// The same while v, whose star they surround, is elsewhere; not counted further than
+  /// to `enough`. A cell away from v that is Delaunay stays so unless v is in a ball of
+  /// it: there is no other new place.
+  [[nodiscard]] int count_moved(Index v, int enough) {
+    int n = 0;
+    for (std::size_t k = 0; k < cells_.size() && n < enough; ++k)
+      if (k < n_star_ || known(cells_[k]) != all_vertices<d> || may_hold(cells_[k], v))
+        n += missing(test_.bits(cells_[k]));
+    return n;
+  }
+  /// The vertex has moved.
+  void forget() {
+    for (Index c : cells_)
+      known_[static_cast<std::size_t>(c)] = unknown;
   }
 
 private:
   const Triangulation<d> &mesh_;
   DelaunayTest<d> test_;
+  std::vector<std::uint8_t> known_; ///< per cell, the answer before the trial
   std::vector<std::uint32_t> seen_; ///< per cell
   std::uint32_t epoch_ = 0;
+  std::vector<Index> cells_;
+  std::size_t n_star_ = 0;
+
+  static constexpr std::uint8_t unknown = 255;
+
+  [[nodiscard]] std::uint8_t known(Index c) {
+    std::uint8_t &bits = known_[static_cast<std::size_t>(c)];
+    if (bits == unknown)
+      bits = test_.bits(c);
+    return bits;
+  }
+  [[nodiscard]] static int missing(std::uint8_t bits) {
+    return int(d + 1) - std::popcount(static_cast<unsigned>(bits));
+  }
+  /// Whether one of the balls of a cell may have a vertex inside.
+  [[nodiscard]] bool may_hold(Index c, Index v) const {
+    const Simplex<d> s = mesh_.simplex(c);
+    return std::any_of(mesh_.at(c).begin(), mesh_.at(c).end(), [&](Index of) {
+      return !Circumball<d>(mesh_.vertex(of).M, s)
+                  .power(mesh_.vertex(v).x)
+                  .is_positive();
+    });
+  }
 };
 
 template <std::size_t d>
@@ -108,6 +151,7 @@ std::size_t mend_failures(const Triangulation<d> &mesh, Mender &mender,
                       monitor.look(double(round) / max_rounds);
        ++round) {
     std::size_t moved = 0;
+    mender.failures().know(known.bits);
     for (Index c : failing)
       if (monitor.look(double(round) / max_rounds))
         moved += mender.mend(c, round);

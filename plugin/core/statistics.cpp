@@ -183,4 +183,9 @@ DistortionQuantiles distortion_quantiles(std::span<const Vertex<3>> vertices,
   return quantiles(std::move(values));
 }
 
+DistortionQuantiles distortion_quantiles(std::span<const Vertex<3>> vertices,
+                                         std::span<const Cell<3>> cells, int threads) {
+  return distortion_quantiles(vertices, edges_of<3>(cells, vertices.size()), threads);
+}
+
 } // namespace anistar

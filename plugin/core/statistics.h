@@ -44,6 +44,9 @@ distortion_quantiles(std::span<const Vertex<2>> vertices,
 [[nodiscard]] DistortionQuantiles
 distortion_quantiles(std::span<const Vertex<3>> vertices,
                      std::span<const std::array<Index, 2>> edges, int threads);
+[[nodiscard]] DistortionQuantiles
+distortion_quantiles(std::span<const Vertex<3>> vertices,
+                     std::span<const Cell<3>> cells, int threads);
 
 /// gamma(M, N) = max(|F_M^-1 F_N|, |F_N^-1 F_M|), the distortion between two metrics
 /// (RR-7712 v2, section 2).

@@ -17,10 +17,10 @@ constexpr double least_reduction = .05;
 constexpr double radii[] = {.3, .15, .07};
 /// Every so many rounds collapses and insertions are tried.
 constexpr int repair_period = 5;
-/// From this round on, in every second one, vertices at a facet that resists wander, by
-/// this much.
+/// From this round on vertices at a facet that resists wander, by this much: where
+/// metrics vary a lot the rest is stuck without.
 constexpr int first_wandering = 3;
-constexpr double wandering_radius = .2;
+constexpr double wandering_radius = .1;
 /// A bound on the trial places; the metrics that could be certified, but for a few
 /// cells, took a third of it.
 constexpr std::size_t trials_per_cell = 20;
@@ -35,10 +35,10 @@ constexpr std::size_t calls_between_looks = 64;
 class VolumeAgreement {
 public:
   VolumeAgreement(Volume &volume, Monitor &monitor, double hausdorff_number,
-                  std::uint64_t seed)
+                  std::uint64_t seed, int persistence)
       : volume_(volume), mesh_(volume.mesh), monitor_(monitor), seed_(seed),
-        state_(volume, hausdorff_number), relocation_(state_),
-        repair_(state_, monitor) {}
+        persistence_(persistence), state_(volume, hausdorff_number),
+        relocation_(state_), repair_(state_, monitor) {}
 
   VolumeAgreementCounts run(int threads) {
     const std::uint32_t start = ++volume_.clock;
@@ -57,6 +57,7 @@ private:
   const Triangulation<3> &mesh_;
   Monitor &monitor_;
   std::uint64_t seed_;
+  int persistence_;
   AgreementState state_;
   VolumeRelocation relocation_;
   FacetRepair repair_;
@@ -113,7 +114,10 @@ private:
   AgreementStop reduce() {
     std::size_t fewest = failing_.size();
     int since = 0; // the last time there were clearly fewer
-    for (int round = 0; round < max_rounds; ++round) {
+    const int last_round = persistence_ * max_rounds;
+    const std::size_t most_trials =
+        static_cast<std::size_t>(persistence_) * trials_per_cell * mesh_.n_cells();
+    for (int round = 0; round < last_round; ++round) {
       if (failing_.empty())
         return AgreementStop::agreed;
       ++counts_.rounds;
@@ -121,7 +125,7 @@ private:
       update_list();
       if (!is_going)
         return AgreementStop::interrupted;
-      if (relocation_.trials() > trials_per_cell * mesh_.n_cells())
+      if (relocation_.trials() > most_trials)
         return AgreementStop::trials;
       ++since;
       if (static_cast<double>(failing_.size()) <
@@ -129,7 +133,8 @@ private:
         fewest = failing_.size();
         since = 0;
       }
-      if (since >= (failing_.size() <= few ? patience_with_few : patience))
+      if (since >=
+          persistence_ * (failing_.size() <= few ? patience_with_few : patience))
         return AgreementStop::stalled;
     }
     return failing_.empty() ? AgreementStop::agreed : AgreementStop::rounds;
@@ -138,7 +143,7 @@ private:
   bool visit_failing(int round) {
     const bool is_repairing = round % repair_period == repair_period - 1;
     for (std::size_t k = 0; k < failing_.size(); ++k) {
-      if (!go_on(static_cast<double>(round) / max_rounds))
+      if (!go_on(static_cast<double>(round) / (persistence_ * max_rounds)))
         return false;
       const HalfFacet h = failing_[k];
       if (!still_fails(h))
@@ -173,7 +178,7 @@ private:
       if (!still_fails(h))
         return;
     }
-    if (round >= first_wandering && round % 2 == 1)
+    if (round >= first_wandering)
       counts_.moves += relocation_.wander(vertices[first], wandering_radius, random);
   }
 
@@ -197,8 +202,9 @@ private:
 
 VolumeAgreementCounts agree_volume(Volume &volume, Monitor &monitor,
                                    double hausdorff_number, std::uint64_t seed,
-                                   int threads) {
-  return VolumeAgreement(volume, monitor, hausdorff_number, seed).run(threads);
+                                   int threads, int persistence) {
+  return VolumeAgreement(volume, monitor, hausdorff_number, seed, persistence)
+      .run(threads);
 }
 
 } // namespace anistar

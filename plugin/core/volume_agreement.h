@@ -43,8 +43,9 @@ struct VolumeAgreementCounts {
 /// once, on several threads. No quality
 /// falls below agreement_floor that was not below before.
 /// @param hausdorff_number of curved surfaces, as in VolumePasses
+/// @param persistence so many times the rounds and trials, for what is stuck
 VolumeAgreementCounts agree_volume(Volume &volume, Monitor &monitor,
                                    double hausdorff_number, std::uint64_t seed,
-                                   int threads);
+                                   int threads, int persistence = 1);
 
 } // namespace anistar

@@ -16,7 +16,10 @@ namespace {
 
 constexpr int max_rounds = 200;
 /// Rounds without fewer failing cells after which the run has stalled.
-constexpr int patience = 16;
+constexpr int patience = 16, patience_with_last = 64;
+/// So many failing cells are the last ones: all facets may be in order then, and only
+/// the certificate shows which moves help. Rounds cost little.
+constexpr std::size_t last_failing = 20;
 /// While a round leaves less than this part of the failing cells, vertices are moved
 /// wherever the cost goes down; then only where fewer facets fail, and points come in.
 constexpr double good_progress = .95;
@@ -26,10 +29,13 @@ constexpr double any_progress = .995;
 /// for what it costs. More places are tried only when at most so many cells fail.
 constexpr double many_failing = .3;
 constexpr std::size_t few_failing = 100;
-/// What is stuck goes through agreement and the star check again, every so many rounds
-/// that brought nothing: they swap facets of surfaces and remove vertices, which the
-/// rules do not.
-constexpr int agreement_period = 5;
+/// While at most this part of the cells fails, what the rules hardly improve goes
+/// through agreement and the star check again, that many rounds later at the earliest:
+/// they swap facets of surfaces, remove vertices and let them wander, which the rules
+/// do not, and a facet costs them far less than a cavity. With more patience than the
+/// first time.
+constexpr double agreeable = .05;
+constexpr int agreement_period = 5, agreement_persistence = 5;
 /// The clock is looked at after so many bad cells.
 constexpr std::size_t cells_between_looks = 32;
 /// New vertices keep this distance from the others in their own metric (packing).
@@ -51,22 +57,27 @@ struct Effort {
 
 /// How the failing cells became fewer.
 struct Progress {
-  double failing;       ///< part of the cells
-  double before = 1;    ///< in the round before
-  double reference = 1; ///< when the count below was reset
-  int since_best = 0;   ///< rounds that brought nothing
+  double failing;                         ///< part of the cells
+  double before = 1;                      ///< in the round before
+  double reference = 1;                   ///< when the count below was reset
+  int since_best = 0;                     ///< rounds that brought nothing
+  int since_agreement = agreement_period; ///< rounds
 
   void note(double now) {
     before = std::exchange(failing, now);
     ++since_best;
+    ++since_agreement;
     if (failing < any_progress * reference) {
       reference = failing;
       since_best = 0;
     }
   }
-  [[nodiscard]] bool asks_for_agreement(std::size_t n_bad) const {
-    return n_bad <= few_failing &&
-           since_best % agreement_period == agreement_period - 1;
+  [[nodiscard]] bool asks_for_agreement() {
+    const bool asks = failing <= agreeable && failing > good_progress * before &&
+                      since_agreement >= agreement_period;
+    if (asks)
+      since_agreement = 0;
+    return asks;
   }
   [[nodiscard]] Effort effort(std::size_t n_bad) const {
     const bool is_stuck = since_best > 3 && n_bad <= few_failing;
@@ -327,25 +338,28 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
                                           int threads, DelaunayBits &known) {
   ConsistencyCounts counts;
   Rounds rounds(volume, monitor, parameters, seed, counts);
-  const RoundBounds bounds{max_rounds, patience,
-                           (1 + parameters.max_growth) *
-                               static_cast<double>(volume.n_vertices())};
+  RoundBounds bounds{max_rounds, patience,
+                     (1 + parameters.max_growth) *
+                         static_cast<double>(volume.n_vertices())};
   Progress progress{failing_fraction(volume.mesh, known.bits)};
   progress.reference = progress.failing;
   std::optional<Snapshot> best(std::in_place, volume, known, progress.failing);
   for (counts.rounds = 0;; ++counts.rounds) {
     const std::vector<BadCell<3>> bad =
         bad_cells<3>(volume.mesh, volume.background, known.bits, parameters, false);
+    const bool are_last = bad.size() <= last_failing;
+    bounds.patience = are_last ? patience_with_last : patience;
     counts.stop = bounds.stop(bad.empty(), counts.rounds, progress.since_best,
                               volume.n_vertices(), monitor);
     if (!counts.stop.empty())
       break;
     const std::uint32_t since = ++volume.clock;
     const std::uint64_t round_seed = seed + 1 + std::uint64_t(counts.rounds);
-    const bool agreeing = progress.asks_for_agreement(bad.size());
+    const bool agreeing = progress.asks_for_agreement();
     if (agreeing)
-      counts.moves +=
-          agree_volume(volume, monitor, hausdorff_number, round_seed, threads).moves;
+      counts.moves += agree_volume(volume, monitor, hausdorff_number, round_seed,
+                                   threads, agreement_persistence)
+                          .moves;
     else
       rounds.treat(bad, counts.rounds, progress.effort(bad.size()));
     // all of it, or the bits would be those of another mesh
@@ -356,7 +370,7 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
           return true;
         },
         known);
-    if (agreeing)
+    if (agreeing || are_last)
       counts.moves += mend_stars(volume, monitor, hausdorff_number, round_seed, known);
     progress.note(failing_fraction(volume.mesh, known.bits));
     if (progress.failing < best->failing)
@@ -366,6 +380,7 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
     known = std::move(best->known);
     restore(volume, std::move(*best));
   }
+  counts.ln_gamma_p90 = ln_gamma_p90(volume.mesh, known.bits);
   return counts;
 }
 

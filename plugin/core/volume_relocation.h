@@ -47,6 +47,7 @@ public:
     const Score before = here();
     const Vertex<3> from = trial_;
     const Index from_cell = volume_.mesh.background_cell[static_cast<std::size_t>(v)];
+    const std::size_t n_changed = state_.changed.size();
     for (int k = 0; k < n_places; ++k) {
       Index at = from_cell;
       if (!try_near(from, radius * (k + 1) / n_places, before, random, at))
@@ -57,6 +58,7 @@ public:
         return true;
       keep_trial();
       commit(from, from_cell);
+      state_.changed.resize(n_changed);
     }
     return false;
   }

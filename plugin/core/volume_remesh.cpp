@@ -157,9 +157,8 @@ std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
   if (settings.agreement == AgreementMode::when_possible &&
       settings.consistency == ConsistencyMode::off)
     return "skipped: not asked for, and in 3D it takes as long as the remeshing";
-  const DistortionQuantiles gamma = distortion_quantiles(
-      volume.mesh.vertices, edges_of<3>(volume.mesh.cells, volume.mesh.vertices.size()),
-      settings.threads);
+  const DistortionQuantiles gamma =
+      distortion_quantiles(volume.mesh.vertices, volume.mesh.cells, settings.threads);
   const std::string too_fast = "skipped: the metric varies too fast, ln gamma ";
   if (gamma.p90 > largest_agreeing_p90)
     return too_fast + "p90 " + quotient(gamma.p90, largest_agreeing_p90);

@@ -17,16 +17,17 @@ public:
   /// As in 2D; vertices on surfaces and ridges slide along them.
   bool mend(Index cell, int round) {
     for (Index v : failures_.culprits(cell)) {
-      std::vector<Index> cells;
-      star_of(volume_, v, cells);
-      failures_.surround(cells);
-      const int failing = failures_.count(cells);
+      star_of(volume_, v, star_);
+      failures_.surround(star_);
+      const int failing = failures_.count();
       CounterRandom random(seed_ ^ 0x5741u, static_cast<std::uint64_t>(v),
                            static_cast<std::uint64_t>(round));
       if (relocation_.relocate_where(v, radius, random, [&] {
-            return failures_.count(cells, failing) < failing;
-          }))
+            return failures_.count_moved(v, failing) < failing;
+          })) {
+        failures_.forget();
         return true;
+      }
     }
     return false;
   }
@@ -41,6 +42,7 @@ private:
   AgreementState state_;
   VolumeRelocation relocation_;
   StarFailures<3> failures_;
+  std::vector<Index> star_;
 };
 
 } // namespace

@@ -1,6 +1,7 @@
 """Algorithms 2 and 3 in 3D: points are inserted until every star agrees, or a bound is met."""
 
 import dataclasses
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -26,6 +27,35 @@ def hopeless(mesh, seed=0, h=0.35, ratio=4.0):
     """Another direction at every vertex."""
     Q, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(mesh.n_points, 3, 3)))
     return np.einsum("nik,k,njk->nij", Q, np.array([1, 1, ratio**2]) / h**2, Q)
+
+
+def edge_distortions(cells, metric):
+    """ln gamma between the ends of every edge."""
+    edges = np.unique(np.sort(cells[:, list(combinations(range(4), 2))].reshape(-1, 2)), axis=0)
+    ratios = np.linalg.eigvals(np.linalg.solve(metric[edges[:, 0]], metric[edges[:, 1]])).real
+    return 0.5 * np.abs(np.log(ratios)).max(axis=1)
+
+
+def layered(mesh, thin=0.02, growth=0.35, h=0.14):
+    """Sizes across z that grow by a third of the distance: the metrics of neighbours differ."""
+    M = uniform(mesh, h)
+    M[:, 2, 2] = 1 / (thin + growth * mesh.points[:, 2]) ** 2
+    return M
+
+
+def test_where_agreement_gives_up_it_goes_on_with_more_patience():
+    mesh = cube(7)
+    M = layered(mesh)
+    agreed = remesh(mesh, M, RemeshOptions(agreement=True))
+    options = RemeshOptions(agreement=True, until_consistent=True)
+    done = remesh(mesh, M, options)
+    assert agreed.report.simplex_ok < 0.9995
+    assert agreed.report.distortion["p90"] > 0.3
+    assert done.report.consistency["stop_reason"] == "consistent"
+    assert done.report.consistency["ln_gamma_p90"] == 0
+    assert certify(done.mesh, done.metric).star_ok.all()
+    assert done.mesh.n_points < 1.01 * agreed.mesh.n_points
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
 
 
 def test_a_smooth_metric_ends_consistent_with_few_more_vertices():
@@ -70,6 +100,10 @@ def test_a_metric_that_turns_too_fast_stalls_with_the_best_mesh_and_its_figures(
     assert counts["stop_reason"] in {"stalled", "max_growth", "max_rounds"}
     assert not done.report.converged
     certificate = certify(done.mesh, done.metric)
+    failing = done.mesh.cells[~certificate.simplex_ok]
+    assert counts["ln_gamma_p90"] == pytest.approx(
+        np.percentile(edge_distortions(failing, done.metric), 90), rel=0.05
+    )
     assert certificate.simplex_ok.mean() >= certify(plain.mesh, plain.metric).simplex_ok.mean()
     assert done.report.simplex_ok == pytest.approx(certificate.simplex_ok.mean(), abs=1e-12)
     assert done.report.star_ok == pytest.approx(certificate.star_ok.mean(), abs=1e-12)

@@ -60,6 +60,7 @@ nb::dict as_dict(const ConsistencyCounts &counts) {
   out["inconsistency"] = counts.inconsistency;
   out["boundary"] = counts.boundary;
   out["rounds"] = counts.rounds;
+  out["ln_gamma_p90"] = counts.ln_gamma_p90;
   out["stop_reason"] = counts.stop;
   return out;
 }
