@@ -8,6 +8,13 @@ namespace anistar {
 
 namespace {
 
+template <std::size_t d> std::size_t lowest(const Facet<d> &facet) {
+  Index low = facet[0];
+  for (std::size_t i = 1; i < d; ++i)
+    low = std::min(low, facet[i]);
+  return static_cast<std::size_t>(low);
+}
+
 /// The vertices of a facet in increasing order.
 template <std::size_t d> Facet<d> sorted(Facet<d> facet) {
   if (facet[1] < facet[0])
@@ -30,23 +37,16 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
   // counting sort of the half-facets by their smallest vertex, then matching in buckets
   std::vector<Index> start(n_points + 1, 0);
   for (const Cell<d> &cell : cells)
-    for (std::size_t i = 0; i <= d; ++i) {
-      const Facet<d> facet = facet_of<d>(cell, i);
-      ++start[static_cast<std::size_t>(*std::min_element(facet.begin(), facet.end())) +
-              1];
-    }
+    for (std::size_t i = 0; i <= d; ++i)
+      ++start[lowest<d>(facet_of<d>(cell, i)) + 1];
   for (std::size_t v = 0; v < n_points; ++v)
     start[v + 1] += start[v];
   std::vector<HalfFacet> halves(cells.size() * (d + 1));
   std::vector<Index> fill(start.begin(), start.end() - 1);
   for (std::size_t c = 0; c < cells.size(); ++c)
-    for (std::size_t i = 0; i <= d; ++i) {
-      const Facet<d> facet = facet_of<d>(cells[c], i);
-      const auto low =
-          static_cast<std::size_t>(*std::min_element(facet.begin(), facet.end()));
-      halves[static_cast<std::size_t>(fill[low]++)] =
+    for (std::size_t i = 0; i <= d; ++i)
+      halves[static_cast<std::size_t>(fill[lowest<d>(facet_of<d>(cells[c], i))]++)] =
           HalfFacet(static_cast<Index>(c), i);
-    }
   const auto side_of = [&](HalfFacet half) -> HalfFacet & {
     return neighbours[static_cast<std::size_t>(half.cell())][half.facet()];
   };
@@ -59,7 +59,8 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
           facet_of<d>(cells[static_cast<std::size_t>(half.cell())], half.facet())));
     for (std::size_t p = 0; p < bucket.size(); ++p)
       for (std::size_t q = p + 1; q < bucket.size(); ++q) {
-        if (facets[p] != facets[q])
+        // the lowest vertex is the same
+        if (facets[p][1] != facets[q][1] || facets[p].back() != facets[q].back())
           continue;
         HalfFacet &side = side_of(bucket[p]), &other = side_of(bucket[q]);
         if (side.exists() || other.exists())
