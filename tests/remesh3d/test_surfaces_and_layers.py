@@ -53,6 +53,10 @@ def test_the_sides_of_a_thin_shell_do_not_take_each_others_vertices():
     apart = remesh(mesh, uniform(mesh, 0.25))
     assert validate(done.mesh) == []
     np.testing.assert_array_equal(done.mesh.points, apart.mesh.points)
+    for tag, radius in ((1, 0.98), (2, 1.0)):  # chords leave the cylinders by 3.4e-2
+        used = np.unique(apart.mesh.facets[apart.mesh.facet_tags == tag])
+        off = np.abs(np.hypot(*apart.mesh.points[used, :2].T) - radius)
+        assert off.max() < 1e-3
 
 
 def splits_along_a_tube():
