@@ -11,18 +11,25 @@ namespace {
 constexpr int max_rings = 4;
 constexpr std::size_t enough_points = 16;
 /// Points needed for a fit of degree two and three.
-constexpr std::size_t for_quadratic = 5, for_cubic = 10;
-/// Where few points leave the fit undetermined, a square of the height, with which it
-/// is exact on spheres and cylinders, is this much preferred to cubic terms.
-constexpr double cubic_reluctance = .01;
-/// Fits over a tangent plane, each over that of the one before.
-constexpr int max_fits = 4;
+constexpr std::size_t for_quadratic = 5, for_cubic = 9;
+/// Fits, each over the tangent plane of the one before and with its bend: of degree two
+/// until the bend, in units of the reach, changes by less than the first of these, then
+/// of degree three until it changes by less than the second. With a wrong bend a cubic
+/// passes through the few points beside a ridge by leaning over.
+constexpr int max_fits = 12;
+constexpr double settled_square = 1e-3, settled_cubic = 1e-9;
+/// Of the way to the bend of a square fit, which lies as far beyond the mark as the
+/// last bend was short of it, times the mean of (w / u)^2.
+constexpr double relaxation = .7;
+/// The bend times the height of a point of a sphere, up to the height of its centre.
+constexpr double most_bent = .5;
 
 /// Facets that turn away from the vertex by more (the cosine) are not fitted: beyond,
 /// the surface is no graph over the tangent plane.
 constexpr double most_turned = .5;
-/// Directions in which the points do not vary by this fraction are left out of the fit.
-constexpr double rank_tolerance = 1e-5;
+/// Terms that the points do not tell apart by this fraction are left out of the fit:
+/// two rows along a cylinder also lie on a sphere, and on everything between.
+constexpr double rank_tolerance = 1e-2;
 
 class Fitter {
 public:
@@ -132,6 +139,8 @@ private:
   [[nodiscard]] Jet fit(Index jet) {
     Jet out;
     out.normal = weighted_normal(jet);
+    double bend = 0;
+    bool is_settled = false;
     for (int round = 0; round < max_fits; ++round) {
       gather(jet, out.normal);
       stamp_[static_cast<std::size_t>(jet)] = none;
@@ -139,20 +148,38 @@ private:
         stamp_[static_cast<std::size_t>(other)] = none;
       if (ring_.size() <= for_quadratic)
         return out;
-      out = fit_over(jet, out.normal);
+      const double reach = reach_from(jet);
+      out = fit_over(jet, out.normal, bend, is_settled ? 3 : 2, reach);
+      const double change = bend_of(out.curvature) - bend;
+      bend += (is_settled ? 1 : relaxation) * change;
+      if (is_settled && std::abs(change) * reach < settled_cubic)
+        break;
+      is_settled = is_settled || std::abs(change) * reach < settled_square;
     }
     return out;
   }
 
-  /// A fit over the plane with this normal.
-  [[nodiscard]] Jet fit_over(Index jet, const Vector<3> &normal) const {
-    const Vector<3> t = normal.unitOrthogonal(), b = normal.cross(t);
-    const std::size_t n = ring_.size() - 1;
+  [[nodiscard]] double reach_from(Index jet) const {
     double reach = 0;
     for (Index other : ring_)
       reach = std::max(reach, (at(other) - at(jet)).norm());
-    const bool is_cubic = n >= for_cubic;
-    Eigen::MatrixXd A(static_cast<Eigen::Index>(n), is_cubic ? 10 : 5);
+    return reach;
+  }
+
+  /// The jet of w - g w^2 = p(u, v) over the plane with this normal, in units of the
+  /// reach, where g is the bend. On spheres and cylinders of twice this curvature p is
+  /// a square form.
+  [[nodiscard]] Jet fit_over(Index jet, const Vector<3> &normal, double bend,
+                             int degree, double reach) const {
+    const Vector<3> t = normal.unitOrthogonal(), b = normal.cross(t);
+    const std::size_t n = ring_.size() - 1;
+    double highest = 0;
+    for (Index other : ring_)
+      highest = std::max(highest, std::abs((at(other) - at(jet)).dot(normal)));
+    const double most = most_bent / std::max(highest, 1e-300);
+    const double g = std::clamp(bend, -most, most) * reach;
+    const bool is_cubic = degree == 3 && n >= for_cubic;
+    Eigen::MatrixXd A(static_cast<Eigen::Index>(n), is_cubic ? 9 : 5);
     Eigen::VectorXd z(static_cast<Eigen::Index>(n));
     for (std::size_t k = 0; k < n; ++k) {
       const Vector<3> y = (at(ring_[k + 1]) - at(jet)) / reach;
@@ -160,33 +187,57 @@ private:
       const auto row = static_cast<Eigen::Index>(k);
       A.row(row).head(5) << u, v, u * u, u * v, v * v;
       if (is_cubic)
-        A.row(row).tail(5) << w * w, u * u * u, u * u * v, u * v * v, v * v * v;
+        A.row(row).tail(4) << u * u * u, u * u * v, u * v * v, v * v * v;
       A.row(row) *= weight;
-      z[row] = w * weight;
+      z[row] = (w - g * w * w) * weight;
     }
+    return jet_of(t, b, normal, solve(A, z), g, reach);
+  }
+
+  /// The least squares of the least coefficients, without cubic terms where the points
+  /// do not tell them all apart.
+  [[nodiscard]] static Eigen::VectorXd solve(Eigen::MatrixXd A,
+                                             const Eigen::VectorXd &z) {
     Eigen::VectorXd scale = A.colwise().norm().cwiseMax(1e-12).cwiseInverse();
-    if (is_cubic)
-      scale.tail(4) *= cubic_reluctance;
     A = A * scale.asDiagonal();
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
     solver.setThreshold(rank_tolerance);
-    const Eigen::VectorXd c = scale.cwiseProduct(solver.compute(A).solve(z));
+    solver.compute(A);
+    if (A.cols() > 5 && solver.rank() < A.cols()) {
+      scale.conservativeResize(5);
+      solver.compute(A.leftCols(5));
+    }
+    return scale.cwiseProduct(solver.solve(z));
+  }
 
-    // the fundamental forms of the graph of the polynomial, at the vertex
+  /// The fundamental forms, at the vertex, of w - g w^2 = c0 u + c1 v + c2 u^2 + ...
+  [[nodiscard]] static Jet jet_of(const Vector<3> &t, const Vector<3> &b,
+                                  const Vector<3> &normal, const Eigen::VectorXd &c,
+                                  double g, double reach) {
     Jet out;
     const Vector<3> tu = t + c[0] * normal, tv = b + c[1] * normal;
     out.normal = tu.cross(tv).normalized();
     const double slope = std::sqrt(1 + c[0] * c[0] + c[1] * c[1]) * reach;
     Matrix<2> first, second;
     first << tu.dot(tu), tu.dot(tv), tu.dot(tv), tv.dot(tv);
-    second << 2 * c[2], c[3], c[3], 2 * c[4];
-    second /= slope;
+    second << c[2] + g * c[0] * c[0], c[3] / 2 + g * c[0] * c[1],
+        c[3] / 2 + g * c[0] * c[1], c[4] + g * c[1] * c[1];
+    second *= 2 / slope;
     Eigen::Matrix<double, 3, 2> tangents;
     tangents << tu, tv;
     const Matrix<2> inverse = first.inverse();
     out.curvature = as_tensor<3>(
         Matrix<3>(tangents * inverse * second * inverse * tangents.transpose()));
     return out;
+  }
+
+  /// Half of the curvature of a sphere or a cylinder; otherwise of a mean of the two,
+  /// (k1 |k1| + k2 |k2|) / (|k1| + |k2|).
+  [[nodiscard]] static double bend_of(const SymmetricTensor<3> &curvature) {
+    const Matrix<3> K = as_matrix<3>(curvature);
+    const double sum = K.trace(), squares = K.squaredNorm();
+    const bool is_saddle = sum * sum < squares;
+    return is_saddle ? sum / 2 : sum == 0 ? 0 : squares / (2 * sum);
   }
 };
 

@@ -8,8 +8,9 @@ namespace anistar {
 /// What a smooth surface does at one of its vertices, from a polynomial of degree up to
 /// three over the tangent plane that fits the vertices around (Cazals and Pouget,
 /// Estimating differential quantities using polynomial fitting of osculating jets,
-/// 2005). Differs from theirs in a term with the square of the height, which makes it
-/// exact on spheres and cylinders, at the edge of a patch as well as inside.
+/// 2005). Differs from theirs in a term with the square of the height, found by fitting
+/// again, which makes it exact on spheres and cylinders, at the edge of a patch as well
+/// as inside.
 struct Jet {
   Vector<3> normal = Vector<3>::Zero();
   SymmetricTensor<3> curvature; ///< principal curvatures with their directions

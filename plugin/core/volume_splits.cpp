@@ -215,17 +215,15 @@ bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rul
   const double s =
       std::clamp(.5 * (.5 + lb / (la + lb)), nearest_to_end, 1 - nearest_to_end);
   const Vector<3> x = volume_.surface.place(dimension, lies_on, p.x + s * e);
-  const Index v = new_vertex(x, dimension, lies_on);
+  if (rule.follows_curve && !comes_nearer(dimension, lies_on, p.x, x, q.x))
+    return false;
+  const Index v = new_vertex(x, dimension, lies_on); // p and q are no more
   bool is_clear = true;
   if (rule.closest > 0)
     for (std::size_t k = 0; k < shell_.n_ring() && is_clear; ++k)
       is_clear = fast_length(volume_.mesh.vertex(shell_.ring[k]),
                              volume_.mesh.vertex(v)) >= rule.closest;
   const bool is_curved = !volume_.surface.is_flat(dimension, lies_on);
-  if (rule.follows_curve && !comes_nearer(dimension, lies_on, p.x, x, q.x)) {
-    volume_.remove_vertex(v);
-    return false;
-  }
   if (!is_clear || !(operator_.replace(shell_.all(), v, {a, b}, acceptance) ||
                      (is_curved && widen_shell(v) &&
                       operator_.replace(star_, v, {a, b}, acceptance)))) {

@@ -217,3 +217,13 @@ def test_the_input_is_never_modified():
     assert [array.tobytes() for array in (mesh.points, mesh.cells, mesh.facets, M)] == before
     assert not np.shares_memory(done.mesh.points, mesh.points)
     assert validate(done.mesh, reference=mesh) == []
+
+
+@pytest.mark.parametrize("width", [1e-3, 1e4])
+def test_the_unit_of_length_does_not_change_what_a_metric_asks_for(width):
+    base = cube(2)
+    mesh = changed(base, points=width * base.points)
+    done = remesh(mesh, uniform(mesh, 0.5 * width))
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+    with pytest.raises(MeshingError, match=r"the metric asks for about 1.0e\+16 cells"):
+        remesh(mesh, uniform(mesh, 1e-5 * width))

@@ -1,11 +1,15 @@
 """Layers along curved surfaces, bodies that only touch, sheets that come near each other."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from remesh3d.domains import touching_cubes, uniform
 from surface.smooth_shapes import bent_block
 
-from anistar import Mesh, remesh, validate
+from anistar import Mesh, RemeshOptions, remesh, validate
 
 
 def across_the_tube(mesh, thin=0.004, along=0.12):
@@ -49,3 +53,31 @@ def test_the_sides_of_a_thin_shell_do_not_take_each_others_vertices():
     apart = remesh(mesh, uniform(mesh, 0.25))
     assert validate(done.mesh) == []
     np.testing.assert_array_equal(done.mesh.points, apart.mesh.points)
+    for tag, radius in ((1, 0.98), (2, 1.0)):  # chords leave the cylinders by 3.4e-2
+        used = np.unique(apart.mesh.facets[apart.mesh.facet_tags == tag])
+        off = np.abs(np.hypot(*apart.mesh.points[used, :2].T) - radius)
+        assert off.max() < 1e-3
+
+
+def splits_along_a_tube():
+    """A mesh that gets new vertices on its cylinders, as text."""
+    mesh = bent_block(6)
+    done = remesh(mesh, uniform(mesh, 0.5), RemeshOptions(hausdorff_number=0.01))
+    assert validate(done.mesh) == []
+    assert done.report.counts["splits"] > 100
+    return done.mesh.points.tobytes().hex()
+
+
+def test_splits_along_curves_read_no_memory_that_was_given_back():
+    # they looked at the ends of an edge where these were before a new vertex came
+    code = f"from {__name__} import splits_along_a_tube as made; print(made())"
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+        "MALLOC_PERTURB_": "85",  # glibc overwrites what is given back
+    }
+    run = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=120
+    )
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.strip() == splits_along_a_tube()
