@@ -48,6 +48,12 @@ def facet_margin(points: Annotated[NDArray[numpy.float64], dict(shape=(None, Non
 def intersect(first: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], second: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
     """Intersect two fields of metrics (n, d, d) by simultaneous reduction."""
 
+def close_facets2(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], contact: float) -> NDArray[numpy.int32]:
+    """Pairs of facets without a clear gap between them, each once, (n, 2)."""
+
+def close_facets3(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], contact: float) -> NDArray[numpy.int32]:
+    """Pairs of facets without a clear gap between them, each once, (n, 2)."""
+
 def grade(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], offsets: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], neighbours: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], *, model: str, log_factor: float, max_distortion: float, tolerance: float, max_rounds: int) -> tuple:
     """
     Grade a metric (n, d, d) along a graph given by offsets and neighbours; returns (metric, rounds, updates, converged).
