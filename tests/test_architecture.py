@@ -11,6 +11,22 @@ PACKAGE = ROOT / "plugin" / "anistar"
 CORE = ROOT / "plugin" / "core"
 
 FOLDERS = {"docs", "metric", "plugin", "requirements", "solver_examples", "tests"}
+# A folder of the core includes itself and those before it; the bindings include all.
+CORE_FOLDERS = [
+    "base",
+    "mesh",
+    "search",
+    "metric",
+    "transfer",
+    "certificate",
+    "remesh",
+    "plane",
+    "surface",
+    "volume",
+]
+# 2D and 3D know nothing of each other.
+APART = [("plane", "surface"), ("plane", "volume")]
+
 MADE_BY_COMMANDS = {"anistar-demo", "build", "dist"}
 
 # The demo is an example that ships inside the package; it solves with scikit-fem.
@@ -198,3 +214,24 @@ def included():
 
 def test_concepts_of_the_core_include_each_other_without_circles():
     assert in_circles(included()) == set()
+
+
+def core_includes():
+    """Pairs of folders of the core, the first with an include of the second."""
+    found = set()
+    for path in [*CORE.rglob("*.cpp"), *CORE.rglob("*.h")]:
+        folder = path.relative_to(CORE).parts[0]
+        for other in re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE):
+            found.add((folder, other.partition("/")[0] if "/" in other else folder))
+    return found
+
+
+def test_folders_of_the_core_include_in_one_direction():
+    assert {path.name for path in CORE.iterdir()} == {*CORE_FOLDERS, "bindings"}
+    rank = {folder: number for number, folder in enumerate([*CORE_FOLDERS, "bindings"])}
+    assert [(one, other) for one, other in core_includes() if rank[other] > rank[one]] == []
+
+
+def test_the_2d_and_the_3d_mesher_do_not_include_each_other():
+    both = {*APART, *((other, one) for one, other in APART)}
+    assert core_includes() & both == set()

@@ -8,7 +8,7 @@ from shapes import arc_metric, linear_metric, rotating_metric, sectors, stretche
 import anistar
 from anistar.remesh import RemeshOptions, remesh
 
-SEVERAL_BLOCKS = 8 * 1024  # vertices; see Blocks in plugin/core/blocks.h
+SEVERAL_BLOCKS = 8 * 1024  # vertices; see Blocks in plugin/core/mesh/blocks.h
 
 
 def graded(mesh, M):

@@ -1,6 +1,6 @@
-#include "../certify.h"
-#include "../facet_test.h"
+#include "certificate/certify.h"
 #include "bind.h"
+#include "certificate/facet_test.h"
 #include "geometry.h"
 
 namespace anistar::bindings {

@@ -1,4 +1,4 @@
-#include "combination.h"
+#include "metric/combination.h"
 #include "arrays.h"
 #include "bind.h"
 

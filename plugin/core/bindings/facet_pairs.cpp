@@ -1,4 +1,4 @@
-#include "../facet_pairs.h"
+#include "search/facet_pairs.h"
 #include "bind.h"
 #include "geometry.h"
 

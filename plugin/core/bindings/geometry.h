@@ -1,9 +1,9 @@
 #pragma once
 // NumPy arrays as spans of the core's points and cells.
 
-#include "../adjacency.h"
-#include "../tensor.h"
 #include "arrays.h"
+#include "base/tensor.h"
+#include "mesh/adjacency.h"
 
 #include <cstring>
 #include <span>

@@ -1,4 +1,4 @@
-#include "gradation.h"
+#include "metric/gradation.h"
 #include "arrays.h"
 
 #include <nanobind/stl/string.h>

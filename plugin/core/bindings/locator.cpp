@@ -1,4 +1,4 @@
-#include "../locator.h"
+#include "search/locator.h"
 #include "bind.h"
 #include "geometry.h"
 

@@ -1,4 +1,4 @@
-#include "../nearest.h"
+#include "search/nearest.h"
 #include "bind.h"
 #include "geometry.h"
 

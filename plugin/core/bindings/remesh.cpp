@@ -1,4 +1,4 @@
-#include "../remesh.h"
+#include "plane/remesh.h"
 #include "bind.h"
 #include "geometry.h"
 #include "report.h"

@@ -1,8 +1,8 @@
 #pragma once
 // What the remeshers of both dimensions return.
 
-#include "../remesh_result.h"
 #include "arrays.h"
+#include "remesh/remesh_result.h"
 
 namespace anistar::bindings {
 

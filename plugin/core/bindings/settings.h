@@ -1,9 +1,9 @@
 #pragma once
 // What the remeshers of both dimensions are told.
 
-#include "../monitor.h"
-#include "../remesh_settings.h"
 #include "arrays.h"
+#include "base/monitor.h"
+#include "remesh/remesh_settings.h"
 
 namespace anistar::bindings {
 

@@ -1,4 +1,4 @@
-#include "../supermesh.h"
+#include "transfer/supermesh.h"
 #include "bind.h"
 #include "geometry.h"
 

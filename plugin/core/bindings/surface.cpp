@@ -1,6 +1,6 @@
-#include "../smooth_surface.h"
 #include "bind.h"
 #include "geometry.h"
+#include "surface/smooth_surface.h"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>

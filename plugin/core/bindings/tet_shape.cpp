@@ -1,6 +1,6 @@
-#include "../densest_shapes.h"
 #include "bind.h"
 #include "geometry.h"
+#include "volume/densest_shapes.h"
 
 namespace anistar::bindings {
 namespace {

@@ -1,4 +1,4 @@
-#include "vertex_graph.h"
+#include "mesh/vertex_graph.h"
 #include "arrays.h"
 
 #include <stdexcept>

@@ -1,8 +1,8 @@
-#include "../volume_remesh.h"
 #include "bind.h"
 #include "geometry.h"
 #include "report.h"
 #include "settings.h"
+#include "volume/remesh.h"
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>

@@ -1,0 +1,92 @@
+#pragma once
+// What stops a long call: the user, a clock, a budget.
+
+#include "base/tensor.h"
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace anistar {
+
+enum class StopReason { finished, max_vertices, max_seconds };
+
+[[nodiscard]] inline const char *name_of(StopReason reason) {
+  switch (reason) {
+  case StopReason::finished:
+    return "finished";
+  case StopReason::max_vertices:
+    return "max_vertices";
+  case StopReason::max_seconds:
+    return "max_seconds";
+  }
+  return "unknown";
+}
+
+/// Failure to make a mesh. The place is apart from the message, because the caller may
+/// measure in other units.
+class MeshingError : public std::runtime_error {
+public:
+  MeshingError(const std::string &message, const Vector<2> &place)
+      : std::runtime_error(message), place_(place) {}
+  [[nodiscard]] const Vector<2> &place() const { return place_; }
+
+private:
+  Vector<2> place_;
+};
+
+/// Asked now and then by every long loop.
+class Monitor {
+public:
+  using Progress = std::function<void(const std::string &phase, double fraction)>;
+  using Clock = std::chrono::steady_clock;
+
+  Monitor(Progress progress, std::size_t max_vertices, double max_seconds)
+      : progress_(std::move(progress)), max_vertices_(max_vertices),
+        max_seconds_(max_seconds) {}
+
+  /// Tells the user; may throw what the callback throws, to interrupt the call.
+  void enter(const std::string &phase) {
+    phase_ = phase;
+    tell(0);
+  }
+  /// @returns false when the phase must end; cheap enough for every iteration.
+  [[nodiscard]] bool keep_going(std::size_t n_vertices, double fraction) {
+    if (n_vertices >= max_vertices_)
+      reason_ = StopReason::max_vertices;
+    return ++calls_ % 4096 == 0 ? look(fraction) : reason_ == StopReason::finished;
+  }
+  /// The same, looking at the clock and at the user every time: for what takes a while.
+  [[nodiscard]] bool look(double fraction) {
+    tell(fraction);
+    if (reason_ == StopReason::finished && elapsed() > max_seconds_)
+      reason_ = StopReason::max_seconds;
+    return reason_ == StopReason::finished;
+  }
+  [[nodiscard]] StopReason reason() const { return reason_; }
+  [[nodiscard]] bool has_room(std::size_t n_vertices) const {
+    return n_vertices < max_vertices_;
+  }
+  [[nodiscard]] double elapsed() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+
+private:
+  Progress progress_;
+  std::size_t max_vertices_;
+  double max_seconds_;
+  Clock::time_point start_ = Clock::now();
+  std::string phase_;
+  std::size_t calls_ = 0;
+  StopReason reason_ = StopReason::finished;
+
+  void tell(double fraction) const {
+    if (progress_)
+      progress_(phase_, fraction);
+  }
+};
+
+} // namespace anistar

@@ -1,0 +1,193 @@
+#include "certificate/certificate.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace anistar {
+namespace {
+
+/// What a thread takes at once: some milliseconds.
+constexpr std::size_t cells_at_once = 128;
+
+} // namespace
+
+template <std::size_t d> void DelaunayTest<d>::begin_walk() {
+  front_.clear();
+  if (++epoch_ != 0)
+    return;
+  std::fill(stamp_.begin(), stamp_.end(), 0);
+  std::fill(known_.begin(), known_.end(), Known{});
+  epoch_ = 1;
+}
+
+template <std::size_t d>
+HalfFacet DelaunayTest<d>::door(Index from, std::size_t i) const {
+  const auto k = static_cast<std::size_t>(from);
+  const HalfFacet beyond = mesh_.neighbours[k][i];
+  const bool is_open = mesh_.constraints[k][i] == none && beyond.exists() &&
+                       stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_;
+  return is_open ? beyond : HalfFacet();
+}
+
+template <std::size_t d>
+void DelaunayTest<d>::enter(HalfFacet door, std::uint8_t depth) {
+  stamp_[static_cast<std::size_t>(door.cell())] = epoch_;
+  front_.push_back({door, depth});
+}
+
+template <std::size_t d>
+Side DelaunayTest<d>::side(const Circumball<d> &ball, Index v) {
+  Known &known = known_[static_cast<std::size_t>(v)];
+  if (known.epoch == epoch_)
+    return Side::outside; // of the simplex, or seen before
+  const Vector<d> &x = mesh_.vertices[static_cast<std::size_t>(v)].x;
+  known = {epoch_, ball.power(x)};
+  const Side found = ball.side(x, known.power);
+  if (found == Side::boundary)
+    known.power = {};
+  return found;
+}
+
+template <std::size_t d>
+bool DelaunayTest<d>::meets(const Circumball<d> &ball, const Facet<d> &facet) const {
+  std::array<const Vector<d> *, d> corners;
+  std::array<Bounded, d> powers;
+  for (std::size_t n = 0; n < d; ++n) {
+    const auto v = static_cast<std::size_t>(facet[n]);
+    corners[n] = &mesh_.vertices[v].x;
+    powers[n] = known_[v].power;
+  }
+  return ball.meets(corners, powers);
+}
+
+template <std::size_t d>
+Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
+  const auto cell_at = [&](Index c) -> const Cell<d> & {
+    return mesh_.cells[static_cast<std::size_t>(c)];
+  };
+  begin_walk();
+  Simplex<d> simplex;
+  for (std::size_t k = 0; k <= d; ++k) {
+    const auto v = static_cast<std::size_t>(cell_at(cell)[k]);
+    simplex[k] = mesh_.vertices[v].x;
+    known_[v] = {epoch_, {}};
+  }
+  const Circumball<d> ball(M, simplex);
+  stamp_[static_cast<std::size_t>(cell)] = epoch_;
+  for (std::size_t i = 0; i <= d; ++i)
+    if (const HalfFacet beyond = door(cell, i); beyond.exists())
+      enter(beyond, 1);
+  for (std::size_t k = 0; k < front_.size(); ++k) {
+    const auto [entry, depth] = front_[k];
+    reach_ = std::max(reach_, depth);
+    const auto deeper =
+        static_cast<std::uint8_t>(std::min<int>(depth + 1, farthest_reach));
+    const Cell<d> &far = cell_at(entry.cell());
+    const Index apex = far[entry.facet()];
+    if (side(ball, apex) == Side::inside)
+      return apex;
+    for (std::size_t i = 0; i <= d; ++i)
+      if (const HalfFacet beyond = door(entry.cell(), i);
+          beyond.exists() && meets(ball, facet_of<d>(far, i)))
+        enter(beyond, deeper);
+  }
+  return none;
+}
+
+template <std::size_t d> std::uint8_t DelaunayTest<d>::bits(Index cell) {
+  const Cell<d> &vertices = mesh_.cells[static_cast<std::size_t>(cell)];
+  const auto metric = [&](unsigned k) -> const SymmetricTensor<d> & {
+    return mesh_.vertices[static_cast<std::size_t>(vertices[k])].M;
+  };
+  unsigned found = 0;
+  reach_ = 0;
+  for (unsigned k = 0; k <= d; ++k) {
+    unsigned same = 0; // the first vertex with this metric
+    while (metric(same).entries != metric(k).entries)
+      ++same;
+    if (same < k ? found >> same & 1 : violator(cell, metric(k)) == none)
+      found |= 1u << k;
+  }
+  return static_cast<std::uint8_t>(found);
+}
+
+template <std::size_t d>
+void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> cells, int threads,
+                const Look &look, DelaunayBits &known) {
+  const std::size_t n = cells.size(), n_parts = (n + cells_at_once - 1) / cells_at_once;
+  const auto caller = std::this_thread::get_id();
+  std::atomic<bool> is_going = true;
+  parallel_items(n_parts, threads, [&] {
+    return [&, test = DelaunayTest<d>(mesh)](std::size_t part) mutable {
+      if (std::this_thread::get_id() == caller &&
+          !look(static_cast<double>(part) / static_cast<double>(n_parts)))
+        is_going = false;
+      const std::size_t begin = part * cells_at_once;
+      for (std::size_t k = begin; is_going && k < std::min(n, begin + cells_at_once);
+           ++k) {
+        const auto c = static_cast<std::size_t>(cells[k]);
+        known.bits[c] = test.bits(cells[k]);
+        known.reach[c] = test.reach();
+      }
+    };
+  });
+}
+
+template <std::size_t d>
+DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads, const Look &look) {
+  const std::size_t n = mesh.cells.size();
+  DelaunayBits found{std::vector<std::uint8_t>(n, 0), std::vector<std::uint8_t>(n, 0)};
+  std::vector<Index> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  renew_bits(mesh, all, threads, look, found);
+  return found;
+}
+
+template <std::size_t d>
+std::vector<Index> dependent_cells(std::span<const Neighbours<d>> neighbours,
+                                   std::span<const Index> changed,
+                                   std::span<const std::uint8_t> reach) {
+  std::vector<bool> is_seen(neighbours.size(), false);
+  std::vector<Index> layer, next, found;
+  const auto see = [&](Index c) {
+    if (is_seen[static_cast<std::size_t>(c)])
+      return;
+    is_seen[static_cast<std::size_t>(c)] = true;
+    next.push_back(c);
+  };
+  for (Index c : changed)
+    see(c);
+  const int farthest = *std::max_element(reach.begin(), reach.end());
+  for (int distance = 0; distance <= farthest && !next.empty();
+       distance = std::min<int>(distance + 1, farthest_reach)) {
+    layer.swap(next);
+    next.clear();
+    for (Index c : layer) {
+      if (reach[static_cast<std::size_t>(c)] >= distance)
+        found.push_back(c);
+      for (HalfFacet beyond : neighbours[static_cast<std::size_t>(c)])
+        if (beyond.exists())
+          see(beyond.cell());
+    }
+  }
+  return found;
+}
+
+template class DelaunayTest<2>;
+template class DelaunayTest<3>;
+template DelaunayBits delaunay_bits(CertifiedMesh<2>, int, const Look &);
+template void renew_bits(CertifiedMesh<2>, std::span<const Index>, int, const Look &,
+                         DelaunayBits &);
+template std::vector<Index> dependent_cells<2>(std::span<const Neighbours<2>>,
+                                               std::span<const Index>,
+                                               std::span<const std::uint8_t>);
+template DelaunayBits delaunay_bits(CertifiedMesh<3>, int, const Look &);
+template void renew_bits(CertifiedMesh<3>, std::span<const Index>, int, const Look &,
+                         DelaunayBits &);
+template std::vector<Index> dependent_cells<3>(std::span<const Neighbours<3>>,
+                                               std::span<const Index>,
+                                               std::span<const std::uint8_t>);
+
+} // namespace anistar

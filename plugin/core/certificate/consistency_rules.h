@@ -1,0 +1,101 @@
+#pragma once
+// The rules of Algorithm 2 of Boissonnat, Wormser, Yvinec (RR-7712 v2, section 4.1),
+// for meshes of triangles and of tetrahedra.
+
+#include "certificate/certificate.h"
+#include "mesh/statistics.h"
+#include "mesh/triangulation.h"
+
+#include <string>
+
+namespace anistar {
+
+/// The parameters of the paper, by their names there.
+struct ConsistencyParameters {
+  double alpha_0; ///< rule 1: r >= alpha_0 sf
+  double rho_0;   ///< rule 2: radius-edge ratio
+  double sigma_0; ///< rule 3: sliverity
+  double gamma_0; ///< distortion bound of the sizing field; infinite: off
+  double delta;   ///< picking region: the ball of radius delta r about the circumcentre
+  double beta;    ///< hitting sets count up to radius beta r
+  int candidates; ///< points that pick_valid tries
+  double max_growth; ///< at most this fraction of vertices is added
+};
+
+/// Whether points are inserted until every star agrees; `pure` starts from the boundary
+/// alone and applies nothing but the rules of the paper.
+enum class ConsistencyMode { off, on, pure };
+
+enum class Rule { kept, size, radius_edge, sliver, inconsistency };
+
+struct ConsistencyCounts {
+  std::size_t size = 0, radius_edge = 0, sliver = 0, inconsistency = 0;
+  std::size_t boundary = 0; ///< splits at encroached constrained facets
+  std::size_t moves = 0;    ///< of vertices, in 3D
+  int rounds = 0;
+  double ln_gamma_p90 = 0; ///< of the edges of the cells that fail in the end
+  std::string stop; ///< consistent, stalled, max_growth, max_rounds, or the monitor's
+
+  void add(Rule rule) {
+    switch (rule) {
+    case Rule::size:
+      ++size;
+      break;
+    case Rule::radius_edge:
+      ++radius_edge;
+      break;
+    case Rule::sliver:
+      ++sliver;
+      break;
+    case Rule::inconsistency:
+      ++inconsistency;
+      break;
+    case Rule::kept:
+      break;
+    }
+  }
+};
+
+/// The distortion where cells fail: 10 % of their edges have a larger ln gamma; 0 when
+/// none fails.
+template <std::size_t d>
+[[nodiscard]] double ln_gamma_p90(const Triangulation<d> &mesh,
+                                  const std::vector<std::uint8_t> &bits) {
+  std::vector<Cell<d>> failing;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    if (mesh.is_alive(static_cast<Index>(c)) && bits[c] != all_vertices<d>)
+      failing.push_back(mesh.cells[c]);
+  return failing.empty() ? 0 : distortion_quantiles(mesh.vertices, failing, 1).p90;
+}
+
+/// Certified fractions of a mesh.
+struct CertifiedFractions {
+  double simplex_ok =
+      0;              ///< of the cells: Delaunay in the metrics of all their vertices
+  double star_ok = 0; ///< of the stars: their cells are Delaunay in its metric
+};
+
+template <std::size_t d>
+[[nodiscard]] CertifiedFractions
+certified_fractions(const Triangulation<d> &mesh,
+                    const std::vector<std::uint8_t> &bits) {
+  std::vector<std::uint8_t> ok(mesh.vertices.size(), 1);
+  std::size_t cells = 0, stars = 0, used = 0;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    if (!mesh.is_alive(static_cast<Index>(c)))
+      continue;
+    cells += bits[c] == all_vertices<d>;
+    for (std::size_t k = 0; k <= d; ++k)
+      if ((bits[c] >> k & 1) == 0)
+        ok[static_cast<std::size_t>(mesh.cells[c][k])] = 0;
+  }
+  for (std::size_t v = 0; v < ok.size(); ++v)
+    if (mesh.is_used(static_cast<Index>(v))) {
+      ++used;
+      stars += ok[v];
+    }
+  return {static_cast<double>(cells) / static_cast<double>(mesh.n_cells()),
+          static_cast<double>(stars) / static_cast<double>(used)};
+}
+
+} // namespace anistar

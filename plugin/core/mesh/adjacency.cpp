@@ -1,0 +1,114 @@
+#include "mesh/adjacency.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace anistar {
+
+namespace {
+
+template <std::size_t d> std::size_t lowest(const Facet<d> &facet) {
+  Index low = facet[0];
+  for (std::size_t i = 1; i < d; ++i)
+    low = std::min(low, facet[i]);
+  return static_cast<std::size_t>(low);
+}
+
+/// The vertices of a facet in increasing order.
+template <std::size_t d> Facet<d> sorted(Facet<d> facet) {
+  if (facet[1] < facet[0])
+    std::swap(facet[0], facet[1]);
+  if constexpr (d == 3) {
+    if (facet[2] < facet[1])
+      std::swap(facet[1], facet[2]);
+    if (facet[1] < facet[0])
+      std::swap(facet[0], facet[1]);
+  }
+  return facet;
+}
+
+} // namespace
+
+template <std::size_t d>
+std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
+                                     std::size_t n_points) {
+  std::vector<Neighbours<d>> neighbours(cells.size());
+  // counting sort of the half-facets by their smallest vertex, then matching in buckets
+  std::vector<Index> start(n_points + 1, 0);
+  for (const Cell<d> &cell : cells)
+    for (std::size_t i = 0; i <= d; ++i)
+      ++start[lowest<d>(facet_of<d>(cell, i)) + 1];
+  for (std::size_t v = 0; v < n_points; ++v)
+    start[v + 1] += start[v];
+  std::vector<HalfFacet> halves(cells.size() * (d + 1));
+  std::vector<Index> fill(start.begin(), start.end() - 1);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (std::size_t i = 0; i <= d; ++i)
+      halves[static_cast<std::size_t>(fill[lowest<d>(facet_of<d>(cells[c], i))]++)] =
+          HalfFacet(static_cast<Index>(c), i);
+  const auto side_of = [&](HalfFacet half) -> HalfFacet & {
+    return neighbours[static_cast<std::size_t>(half.cell())][half.facet()];
+  };
+  std::vector<Facet<d>> facets; // of the bucket
+  for (std::size_t v = 0; v < n_points; ++v) {
+    const std::span bucket(halves.begin() + start[v], halves.begin() + start[v + 1]);
+    facets.clear();
+    for (HalfFacet half : bucket)
+      facets.push_back(sorted<d>(
+          facet_of<d>(cells[static_cast<std::size_t>(half.cell())], half.facet())));
+    for (std::size_t p = 0; p < bucket.size(); ++p)
+      for (std::size_t q = p + 1; q < bucket.size(); ++q) {
+        // the lowest vertex is the same
+        if (facets[p][1] != facets[q][1] || facets[p].back() != facets[q].back())
+          continue;
+        HalfFacet &side = side_of(bucket[p]), &other = side_of(bucket[q]);
+        if (side.exists() || other.exists())
+          throw std::invalid_argument("a facet of cell " +
+                                      std::to_string(bucket[p].cell()) +
+                                      " is shared by more than two cells");
+        side = bucket[q];
+        other = bucket[p];
+      }
+  }
+  return neighbours;
+}
+
+template <std::size_t d>
+std::vector<std::array<Index, 2>> edges_of(std::span<const Cell<d>> cells,
+                                           std::size_t n_points) {
+  // a counting sort by the lower end, then a sort of every bucket
+  std::vector<std::size_t> start(n_points + 1, 0);
+  const auto each = [&](auto visit) {
+    for (const Cell<d> &cell : cells)
+      for (std::size_t i = 0; i <= d; ++i)
+        for (std::size_t j = i + 1; j <= d; ++j)
+          visit(static_cast<std::size_t>(std::min(cell[i], cell[j])),
+                std::max(cell[i], cell[j]));
+  };
+  each([&](std::size_t low, Index) { ++start[low + 1]; });
+  for (std::size_t v = 0; v < n_points; ++v)
+    start[v + 1] += start[v];
+  std::vector<Index> high(start.back());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  each([&](std::size_t low, Index other) { high[next[low]++] = other; });
+  std::vector<std::array<Index, 2>> edges;
+  for (std::size_t v = 0; v < n_points; ++v) {
+    const auto begin = high.begin() + static_cast<std::ptrdiff_t>(start[v]),
+               end = high.begin() + static_cast<std::ptrdiff_t>(start[v + 1]);
+    std::sort(begin, end);
+    const auto last = std::unique(begin, end);
+    for (auto it = begin; it != last; ++it)
+      edges.push_back({static_cast<Index>(v), *it});
+  }
+  return edges;
+}
+
+template std::vector<Neighbours<2>> adjacency<2>(std::span<const Cell<2>>, std::size_t);
+template std::vector<Neighbours<3>> adjacency<3>(std::span<const Cell<3>>, std::size_t);
+template std::vector<std::array<Index, 2>> edges_of<2>(std::span<const Cell<2>>,
+                                                       std::size_t);
+template std::vector<std::array<Index, 2>> edges_of<3>(std::span<const Cell<3>>,
+                                                       std::size_t);
+
+} // namespace anistar

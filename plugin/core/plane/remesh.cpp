@@ -1,0 +1,199 @@
+#include "plane/remesh.h"
+
+#include "base/stopwatch.h"
+#include "plane/consistency.h"
+#include "plane/outline.h"
+#include "plane/refine.h"
+#include "plane/shape.h"
+#include "plane/start.h"
+
+namespace anistar {
+namespace {
+
+/// The schedule of phase 3, found by measurement: length control in between sweeps of
+/// smoothing, first wide, then near the bounds of a unit edge; ODT at the end evens
+/// the shapes out.
+struct Round {
+  int pliant_sweeps, odt_sweeps;
+  double shortest, longest; ///< lengths to control after the sweeps; 0: none
+};
+constexpr Round schedule[] = {{3, 0, .68, 1.45}, {3, 0, .70, 1.42}, {3, 2, 0, 0}};
+
+/// Outliers of the last sweeps: edges beyond these, cells below this quality.
+constexpr double shortest_outlier = .5, longest_outlier = 1.55;
+constexpr double repair_floor = .5;
+
+/// Agreement was reached, but for a few stars, on every metric tried whose ln gamma
+/// stays below this on 99 % of the unit edges; above it, it leaves more and more
+/// behind.
+constexpr double largest_agreeing_distortion = .7;
+
+/// A geometry that reaches further beyond the mesh that carries the metric than this
+/// fraction of its extent is another domain.
+constexpr double largest_gap = .25;
+
+/// Asks the points of the geometry, not its curves: a mesh is always its own geometry.
+void check_gap(const Background<2> &background, const GeometryInput &geometry) {
+  Box<2> box;
+  for (const Vector<2> &x : background.locator().points())
+    box.extend(x);
+  const double extent = (box.high - box.low).maxCoeff();
+  Index cell = none;
+  for (const Facet<2> &facet : geometry.facets) {
+    const Vector<2> &x = geometry.points[static_cast<std::size_t>(facet[0])];
+    const Location<2> at = background.locator().locate(x, cell);
+    cell = at.cell;
+    if (at.distance > largest_gap * extent)
+      throw MeshingError(
+          "the geometry reaches beyond the mesh that carries the metric, "
+          "by " +
+              std::to_string(at.distance / extent) + " of its extent where " +
+              std::to_string(largest_gap) + " is allowed,",
+          x);
+  }
+}
+
+void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
+           std::map<std::string, double> &counts) {
+  const auto control = [&](double shortest, double longest) {
+    const LengthCounts done =
+        control_lengths(w, legaliser, monitor, shortest, longest, threads);
+    counts["splits"] += static_cast<double>(done.splits);
+    counts["collapses"] += static_cast<double>(done.collapses);
+  };
+  for (const Round &round : schedule) {
+    for (int k = 0; k < round.pliant_sweeps; ++k)
+      smooth(w, legaliser, monitor, Target::unit_edges, threads);
+    for (int k = 0; k < round.odt_sweeps; ++k)
+      smooth(w, legaliser, monitor, Target::odt, threads);
+    if (round.longest > 0) {
+      control(round.shortest, round.longest);
+      renumber(w, threads); // the new vertices into the blocks where they lie
+    }
+  }
+  control(shortest_outlier, longest_outlier);
+  counts["poor"] = static_cast<double>(repair(w, monitor, repair_floor, threads));
+}
+
+/// Phases 4 and 5, as far as the metric and the settings let them.
+void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
+                   const RemeshSettings &settings, Stopwatch &watch,
+                   RemeshResult<2> &out) {
+  watch.phase("agreement");
+  out.distortion =
+      distortion_quantiles(w.mesh.vertices, w.mesh.cells, settings.threads);
+  const bool can_agree = out.distortion.p99 <= largest_agreeing_distortion;
+  const bool is_pure = settings.consistency == ConsistencyMode::pure;
+  if (settings.agreement == AgreementMode::off &&
+      settings.consistency == ConsistencyMode::off) {
+    out.agreement = "off";
+    return;
+  }
+  if (monitor.reason() != StopReason::finished) {
+    // the cells of a mesh that is not refined can reach across the whole domain
+    out.agreement = std::string("skipped: stopped by ") + name_of(monitor.reason());
+    return;
+  }
+  const bool agreeing =
+      !is_pure && (settings.agreement == AgreementMode::on ||
+                   (settings.agreement == AgreementMode::when_possible && can_agree));
+  if (agreeing) {
+    const AgreementCounts agreed =
+        agree(w, legaliser, monitor, settings.seed, settings.threads);
+    renumber(w, settings.threads);
+    out.counts["disagreeing_before"] = static_cast<double>(agreed.edges_before);
+    out.counts["disagreeing_after"] = static_cast<double>(agreed.edges_after);
+    out.counts["trials"] = static_cast<double>(agreed.trials);
+    out.counts["relocations"] = static_cast<double>(agreed.moves);
+  }
+  const bool stopped = monitor.reason() != StopReason::finished;
+  out.agreement = agreeing && stopped
+                      ? std::string("stopped by ") + name_of(monitor.reason())
+                  : agreeing ? "done"
+                  : is_pure || settings.agreement == AgreementMode::off
+                      ? "off"
+                      : "skipped: the metric varies too fast, ln gamma of 1 % of "
+                        "the edges is above " +
+                            std::to_string(out.distortion.p99);
+  watch.phase("certificate");
+  StarCheck stars = check_stars(w, monitor, settings.seed, settings.threads, agreeing);
+  out.counts["star_failures"] = static_cast<double>(stars.failures);
+  out.counts["star_moves"] = static_cast<double>(stars.moves);
+  if (settings.consistency != ConsistencyMode::off) {
+    watch.phase("consistency");
+    out.consistency = refine_until_consistent(
+        w, legaliser, monitor, settings.parameters, settings.seed, settings.threads,
+        settings.consistency != ConsistencyMode::pure, stars);
+  }
+  out.was_checked = true;
+  out.simplex_ok = stars.simplex_ok;
+  out.star_ok = stars.star_ok;
+}
+
+/// Hands the arrays of the mesh over; the workspace is spent.
+void extract(Workspace &w, RemeshResult<2> &out) {
+  Triangulation<2> &mesh = w.mesh;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const HalfFacet h(static_cast<Index>(c), i), other = mesh.opposite(h);
+      if (mesh.constraint(h) == none || (other.exists() && other.cell() < h.cell()))
+        continue;
+      out.facets.push_back(mesh.facet(h));
+      out.facet_tags.push_back(w.curve(w.curve_edge(h)).tag);
+    }
+  out.vertices = std::move(mesh.vertices);
+  out.cells = std::move(mesh.cells);
+  out.cell_tags = std::move(mesh.region);
+}
+
+} // namespace
+
+RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &input,
+                       const Projection &projection, const RemeshSettings &settings,
+                       Monitor::Progress progress) {
+  RemeshResult<2> out;
+  Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
+  Stopwatch watch(monitor, out.seconds);
+
+  watch.phase("curves");
+  check_gap(background, input);
+  Geometry geometry = make_geometry(input, &projection);
+  Outline outline =
+      make_outline(geometry, background, settings.hausdorff_number, monitor);
+
+  watch.phase("size");
+  const std::size_t n_sharp = outline.n_balls + outline.n_unprotected;
+  MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));
+  const std::size_t n_protected = count_balls(on_curves.curve_edges);
+  out.counts["protected_corners"] = static_cast<double>(n_protected);
+  out.counts["unprotected_corners"] = static_cast<double>(n_sharp - n_protected);
+  Workspace w{on_curves, geometry, background, settings.hausdorff_number};
+  Legaliser legaliser(w.mesh);
+  // the pure mode starts from the boundary alone
+  const bool is_pure = settings.consistency == ConsistencyMode::pure;
+  const RefineCounts refined =
+      is_pure ? RefineCounts{} : refine(w, legaliser, monitor, settings.threads);
+
+  watch.phase("shape");
+  renumber(w, settings.threads);
+  if (!is_pure)
+    shape(w, legaliser, monitor, settings.threads, out.counts);
+  renumber(w, settings.threads);
+
+  certify_stars(w, legaliser, monitor, settings, watch, out);
+
+  watch.phase("report");
+  out.statistics =
+      measure(w.mesh.vertices, w.mesh.cells, w.mesh.neighbours, settings.threads);
+  extract(w, out);
+  watch.stop();
+  out.counts["inserted"] = static_cast<double>(refined.inserted);
+  out.counts["boundary_splits"] = static_cast<double>(refined.boundary_splits);
+  out.counts["rejected"] = static_cast<double>(refined.rejected);
+  out.counts["flips"] = static_cast<double>(legaliser.n_flips());
+  out.counts["capped"] = static_cast<double>(legaliser.n_capped());
+  out.reason = monitor.reason();
+  return out;
+}
+
+} // namespace anistar

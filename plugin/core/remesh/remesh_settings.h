@@ -1,0 +1,23 @@
+#pragma once
+// What the remeshers of both dimensions are told.
+
+#include "certificate/consistency_rules.h"
+
+namespace anistar {
+
+/// Whether vertices are moved until the stars agree. `when_possible` asks the metric:
+/// it must not vary too fast from vertex to vertex.
+enum class AgreementMode { off, when_possible, on };
+
+struct RemeshSettings {
+  double hausdorff_number = .1; ///< of an edge, relative to its length
+  std::size_t max_vertices = static_cast<std::size_t>(-1);
+  double max_seconds = std::numeric_limits<double>::infinity();
+  AgreementMode agreement = AgreementMode::when_possible;
+  ConsistencyMode consistency = ConsistencyMode::off;
+  ConsistencyParameters parameters{};
+  std::uint64_t seed = 0;
+  int threads = 1;
+};
+
+} // namespace anistar

@@ -1,0 +1,345 @@
+#include "surface/surface_features.h"
+
+#include "search/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace anistar {
+namespace {
+
+/// Points this close to a plane or line, relative to the extent of the patch or curve,
+/// are on it.
+constexpr double flat_tolerance = 1e-10;
+
+class DisjointSets {
+public:
+  explicit DisjointSets(std::size_t n) : parent_(n) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+  std::size_t root(std::size_t i) {
+    while (parent_[i] != i)
+      i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::size_t i, std::size_t j) {
+    i = root(i);
+    j = root(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+  /// A number from 0 for every set, in the order of their first members.
+  std::vector<Index> numbers(std::size_t &count) {
+    std::vector<Index> number(parent_.size(), none);
+    count = 0;
+    for (std::size_t i = 0; i < parent_.size(); ++i) {
+      Index &of_root = number[root(i)];
+      if (of_root == none)
+        of_root = static_cast<Index>(count++);
+      number[i] = of_root;
+    }
+    return number;
+  }
+
+private:
+  std::vector<std::size_t> parent_;
+};
+
+struct Side { ///< an edge as one facet has it
+  Index low, high;
+  std::size_t facet;
+  bool is_forward; ///< the facet runs from low to high
+};
+
+struct Ridge {
+  std::array<Index, 2> ends;
+  Index tag;
+  bool is_given;
+  std::vector<Index> patches; ///< of the facets at it, in order
+};
+
+class Classifier {
+public:
+  Classifier(const SurfaceInput &input,
+             const std::function<bool(Index, Index)> &has_ridge_at)
+      : in_(input), has_ridge_at_(has_ridge_at),
+        cosine_(std::cos(input.ridge_angle * std::numbers::pi / 180)) {}
+
+  Features run() {
+    collect_sides();
+    find_given();
+    find_ridges();
+    make_patches();
+    classify_points();
+    make_curves();
+    return std::move(out_);
+  }
+
+private:
+  const SurfaceInput &in_;
+  const std::function<bool(Index, Index)> &has_ridge_at_;
+  double cosine_;
+  Features out_;
+  std::vector<Side> sides_;
+  std::vector<std::pair<std::array<Index, 2>, Index>> given_;
+  std::vector<Ridge> ridges_;
+  std::vector<std::pair<std::size_t, std::size_t>>
+      smooth_;                                     ///< facets joined by an edge
+  std::vector<std::vector<std::size_t>> at_point_; ///< ridges at a point
+
+  [[nodiscard]] const Vector<3> &point(Index v) const {
+    return in_.points[static_cast<std::size_t>(v)];
+  }
+  [[nodiscard]] Vector<3> normal(std::size_t f) const {
+    const Facet<3> &t = in_.facets[f];
+    return (point(t[1]) - point(t[0])).cross(point(t[2]) - point(t[0]));
+  }
+
+  void collect_sides() {
+    for (std::size_t f = 0; f < in_.facets.size(); ++f)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Index u = in_.facets[f][i], w = in_.facets[f][(i + 1) % 3];
+        sides_.push_back({std::min(u, w), std::max(u, w), f, u < w});
+      }
+    std::sort(sides_.begin(), sides_.end(), [](const Side &a, const Side &b) {
+      return std::tie(a.low, a.high, a.facet) < std::tie(b.low, b.high, b.facet);
+    });
+  }
+
+  void find_given() {
+    for (std::size_t e = 0; e < in_.edges.size(); ++e)
+      given_.push_back({{std::min(in_.edges[e][0], in_.edges[e][1]),
+                         std::max(in_.edges[e][0], in_.edges[e][1])},
+                        in_.edge_tags[e]});
+    std::stable_sort(given_.begin(), given_.end(),
+                     [](const auto &a, const auto &b) { return a.first < b.first; });
+  }
+
+  [[nodiscard]] bool is_sharp(std::span<const Side> group) const {
+    if (group.size() != 2)
+      return true;
+    if (in_.facet_tags[group[0].facet] != in_.facet_tags[group[1].facet])
+      return true;
+    const Vector<3> m = normal(group[0].facet), n = normal(group[1].facet);
+    const double sign = group[0].is_forward == group[1].is_forward ? -1 : 1;
+    return sign * m.dot(n) <= cosine_ * m.norm() * n.norm() &&
+           (!has_ridge_at_ || has_ridge_at_(group[0].low, group[0].high));
+  }
+
+  void find_ridges() {
+    std::size_t next_given = 0;
+    const auto take_given = [&](std::array<Index, 2> ends, Index &tag) {
+      // given edges without a facet lie inside the domain
+      while (next_given < given_.size() && given_[next_given].first < ends) {
+        ridges_.push_back(
+            {given_[next_given].first, given_[next_given].second, true, {}});
+        ++next_given;
+      }
+      bool found = false;
+      while (next_given < given_.size() && given_[next_given].first == ends) {
+        tag = given_[next_given++].second;
+        found = true;
+      }
+      return found;
+    };
+    for (std::size_t begin = 0, end = 0; begin < sides_.size(); begin = end) {
+      while (end < sides_.size() && sides_[end].low == sides_[begin].low &&
+             sides_[end].high == sides_[begin].high)
+        ++end;
+      const std::span group(sides_.data() + begin, end - begin);
+      const std::array<Index, 2> ends{group[0].low, group[0].high};
+      Index tag = 0;
+      const bool is_given = take_given(ends, tag);
+      if (!is_given && !is_sharp(group)) {
+        smooth_.emplace_back(group[0].facet, group[1].facet);
+        continue;
+      }
+      Ridge ridge{ends, tag, is_given, {}};
+      for (const Side &side : group)
+        ridge.patches.push_back(static_cast<Index>(side.facet));
+      ridges_.push_back(std::move(ridge));
+    }
+    Index unused = 0;
+    take_given({std::numeric_limits<Index>::max(), 0}, unused);
+  }
+
+  void make_patches() {
+    DisjointSets sets(in_.facets.size());
+    for (const auto &[f, g] : smooth_)
+      sets.join(f, g);
+    std::size_t n = 0;
+    out_.facet_patch = sets.numbers(n);
+    out_.patches.resize(n);
+    std::vector<double> largest(n, -1);
+    std::vector<Box<3>> box(n);
+    const auto patch_of = [&](std::size_t f) {
+      return static_cast<std::size_t>(out_.facet_patch[f]);
+    };
+    for (std::size_t f = 0; f < in_.facets.size(); ++f) {
+      Patch &patch = out_.patches[patch_of(f)];
+      patch.tag = in_.facet_tags[f];
+      patch.is_frozen = std::find(in_.frozen_tags.begin(), in_.frozen_tags.end(),
+                                  patch.tag) != in_.frozen_tags.end();
+      const Vector<3> m = normal(f);
+      if (m.squaredNorm() > largest[patch_of(f)]) {
+        largest[patch_of(f)] = m.squaredNorm();
+        patch.normal = m;
+        patch.origin = point(in_.facets[f][0]);
+      }
+      for (Index v : in_.facets[f])
+        box[patch_of(f)].extend(point(v));
+    }
+    for (Patch &patch : out_.patches) {
+      patch.normal = snapped(patch.normal);
+      patch.is_planar = true;
+    }
+    for (std::size_t f = 0; f < in_.facets.size(); ++f) {
+      Patch &patch = out_.patches[patch_of(f)];
+      const double extent = (box[patch_of(f)].high - box[patch_of(f)].low).maxCoeff();
+      for (Index v : in_.facets[f])
+        patch.is_planar =
+            patch.is_planar && std::abs(patch.normal.dot(point(v) - patch.origin)) <=
+                                   flat_tolerance * extent;
+    }
+    for (Ridge &ridge : ridges_) {
+      for (Index &patch : ridge.patches)
+        patch = out_.facet_patch[static_cast<std::size_t>(patch)];
+      std::sort(ridge.patches.begin(), ridge.patches.end());
+    }
+  }
+
+  /// A unit vector; one along an axis but for round-off is made so.
+  static Vector<3> snapped(const Vector<3> &given) {
+    Vector<3> unit = given / std::max(given.norm(), 1e-300);
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(unit[k]) < 1e-13)
+        unit[k] = 0;
+    return unit / std::max(unit.norm(), 1e-300);
+  }
+
+  void classify_points() {
+    const std::size_t n = in_.points.size();
+    out_.dimension.assign(n, 3);
+    out_.support.assign(n, none);
+    at_point_.resize(n);
+    for (std::size_t r = 0; r < ridges_.size(); ++r)
+      for (Index v : ridges_[r].ends)
+        at_point_[static_cast<std::size_t>(v)].push_back(r);
+    classify_surface_points();
+    for (std::size_t v = 0; v < n; ++v)
+      if (!at_point_[v].empty())
+        out_.dimension[v] =
+            out_.dimension[v] != 0 && is_smooth_ridge_point(static_cast<Index>(v)) ? 1
+                                                                                   : 0;
+    for (Index v : in_.corners)
+      out_.dimension[static_cast<std::size_t>(v)] = 0;
+    for (std::size_t f = 0; f < in_.facets.size(); ++f)
+      if (out_.patches[static_cast<std::size_t>(out_.facet_patch[f])].is_frozen)
+        for (Index v : in_.facets[f])
+          out_.dimension[static_cast<std::size_t>(v)] = 0;
+  }
+
+  /// A point where sheets only touch is a corner.
+  void classify_surface_points() {
+    std::vector<std::vector<std::size_t>> facets(in_.points.size());
+    for (std::size_t f = 0; f < in_.facets.size(); ++f)
+      for (Index v : in_.facets[f])
+        facets[static_cast<std::size_t>(v)].push_back(f);
+    for (std::size_t v = 0; v < facets.size(); ++v) {
+      if (facets[v].empty())
+        continue;
+      out_.dimension[v] = is_one_fan(facets[v]) ? 2 : 0;
+      out_.support[v] = out_.facet_patch[facets[v].front()];
+    }
+  }
+
+  /// Whether the facets at a point are joined by edges.
+  [[nodiscard]] bool is_one_fan(const std::vector<std::size_t> &fan) const {
+    DisjointSets sets(fan.size());
+    const auto shares_edge = [&](std::size_t f, std::size_t g) {
+      int common = 0;
+      for (Index a : in_.facets[f])
+        for (Index b : in_.facets[g])
+          common += a == b;
+      return common >= 2;
+    };
+    for (std::size_t i = 0; i < fan.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (shares_edge(fan[i], fan[j]))
+          sets.join(i, j);
+    std::size_t n = 0;
+    (void)sets.numbers(n);
+    return n == 1;
+  }
+
+  [[nodiscard]] bool is_smooth_ridge_point(Index v) const {
+    const auto &here = at_point_[static_cast<std::size_t>(v)];
+    if (here.size() != 2)
+      return false;
+    const Ridge &r = ridges_[here[0]], &s = ridges_[here[1]];
+    if (r.tag != s.tag || r.is_given != s.is_given || r.patches != s.patches)
+      return false;
+    if (r.patches.empty() && out_.dimension[static_cast<std::size_t>(v)] != 3)
+      return false; // a line inside the domain goes through a surface
+    const auto leg = [&](const Ridge &ridge) -> Vector<3> {
+      return point(ridge.ends[ridge.ends[0] == v ? 1 : 0]) - point(v);
+    };
+    const Vector<3> a = leg(r), b = leg(s);
+    return -a.dot(b) > cosine_ * a.norm() * b.norm();
+  }
+
+  void make_curves() {
+    DisjointSets sets(ridges_.size());
+    for (std::size_t v = 0; v < at_point_.size(); ++v)
+      if (out_.dimension[v] == 1)
+        sets.join(at_point_[v][0], at_point_[v][1]);
+    std::size_t n = 0;
+    const std::vector<Index> curve_of = sets.numbers(n);
+    out_.curves.resize(n);
+    std::vector<std::vector<Index>> points(n);
+    for (std::size_t r = 0; r < ridges_.size(); ++r) {
+      const auto c = static_cast<std::size_t>(curve_of[r]);
+      out_.curves[c].tag = ridges_[r].tag;
+      out_.curves[c].is_given = ridges_[r].is_given;
+      out_.ridges.push_back({ridges_[r].ends, curve_of[r]});
+      for (Index v : ridges_[r].ends) {
+        points[c].push_back(v);
+        if (out_.dimension[static_cast<std::size_t>(v)] == 1)
+          out_.support[static_cast<std::size_t>(v)] = curve_of[r];
+      }
+    }
+    for (std::size_t c = 0; c < n; ++c)
+      fit_line(out_.curves[c], points[c]);
+  }
+
+  void fit_line(SurfaceCurve &curve, const std::vector<Index> &points) const {
+    curve.origin = point(points.front());
+    Vector<3> far = curve.origin;
+    for (Index v : points) // the farthest point from the first, then from that one
+      if ((point(v) - curve.origin).squaredNorm() > (far - curve.origin).squaredNorm())
+        far = point(v);
+    const Vector<3> first = far;
+    for (Index v : points)
+      if ((point(v) - first).squaredNorm() > (curve.origin - first).squaredNorm())
+        curve.origin = point(v);
+    const double extent = (first - curve.origin).norm();
+    curve.direction = snapped(first - curve.origin);
+    curve.is_straight = true;
+    for (Index v : points) {
+      const Vector<3> u = point(v) - curve.origin;
+      curve.is_straight =
+          curve.is_straight && (u - curve.direction * curve.direction.dot(u)).norm() <=
+                                   flat_tolerance * extent;
+    }
+  }
+};
+
+} // namespace
+
+Features find_features(const SurfaceInput &input,
+                       const std::function<bool(Index, Index)> &has_ridge_at) {
+  return Classifier(input, has_ridge_at).run();
+}
+
+} // namespace anistar

@@ -1,0 +1,24 @@
+#pragma once
+// remesh in 3D: a mesh, a metric field and a geometry in; a mesh with unit edges out.
+
+#include "remesh/remesh_result.h"
+#include "remesh/remesh_settings.h"
+#include "volume/passes.h"
+#include "volume/start.h"
+
+namespace anistar {
+
+/// The same with the ridges that were given.
+struct VolumeResult : RemeshResult<3> {
+  std::vector<std::array<Index, 2>> edges;
+  std::vector<Index> edge_tags;
+};
+
+/// @param background the input mesh with its metric
+/// @throws std::invalid_argument, and what the progress callback throws
+[[nodiscard]] VolumeResult
+remesh_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>> metric,
+              const SurfaceInput &geometry, SurfaceProjection projection,
+              const RemeshSettings &settings, Monitor::Progress progress);
+
+} // namespace anistar
