@@ -1,5 +1,7 @@
 """Settings that every test runs with."""
 
+import signal
+
 from hypothesis import HealthCheck, settings
 
 # The same examples in every run: a test that fails here fails for everyone.
@@ -13,6 +15,10 @@ settings.register_profile(
 )
 settings.register_profile("fuzz", derandomize=False, deadline=None, max_examples=2000)
 settings.load_profile("repeatable")
+
+# A shell starts what runs in the background deaf to Ctrl-C, which some tests send.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser):
