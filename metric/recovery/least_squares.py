@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 LAST_PIVOT = 1e-8
-"""Taken where no patch reaches `SMALLEST_PIVOT`: half of the digits are left."""
+"""No pivot is taken to be smaller: half of the digits are left. Also the last resort of a fit."""
 
 LEAST_FREEDOM = 3
 """Samples beyond the number of unknowns from which a residual says something."""

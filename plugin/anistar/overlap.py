@@ -10,6 +10,7 @@ crossings and contacts, and then at one facet of every boundary component.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -21,6 +22,8 @@ from .topology import Bool, Float, Int, Long, RowKeys, facet_normals
 # A point this close to a facet, relative to the facet's size, touches it: a hundred times the
 # round-off of the tests below, far below any gap that a double can resolve usefully.
 CONTACT = 1e-12
+# Pairs of facets that are looked at together; bounds the memory.
+CHUNK = 1 << 16
 
 
 def coincident_points(points: Float, facets: Int) -> tuple[int, int] | None:
@@ -38,8 +41,7 @@ def coincident_points(points: Float, facets: Int) -> tuple[int, int] | None:
 
 def touching_point(points: Float, facets: Int) -> tuple[int, int] | None:
     """Return a point and the row of a facet that it lies on without being its vertex."""
-    pair = _close_pairs(points, facets)
-    for first, second in (pair, pair[::-1]):
+    for first, second in _close_pairs(points, facets):
         for column in range(facets.shape[1]):
             vertex = facets[second, column]
             hit = _lies_on(points, facets[first], vertex)
@@ -51,8 +53,7 @@ def touching_point(points: Float, facets: Int) -> tuple[int, int] | None:
 
 def crossing_facets(points: Float, facets: Int) -> tuple[int, int] | None:
     """Return the rows of two facets that cross each other, if there are any."""
-    pair = _close_pairs(points, facets)
-    for first, second in (pair, pair[::-1]):
+    for first, second in _close_pairs(points, facets):
         hit = _cross(points, facets[first], facets[second])
         if hit.any():
             at = int(np.argmax(hit))
@@ -100,11 +101,14 @@ def _winding(corners: Float) -> float:
     return float(2 * np.arctan2(top, bottom).sum() / (4 * np.pi))
 
 
-def _close_pairs(points: Float, facets: Int) -> tuple[Long, Long]:
-    """Return (first, second) rows of facets that may meet, each pair once."""
+def _close_pairs(points: Float, facets: Int) -> Iterator[tuple[Long, Long]]:
+    """Yield (first, second) rows of facets that may meet, each pair in both orders."""
     close = _core.close_facets2 if points.shape[1] == 2 else _core.close_facets3
     pairs = close(np.ascontiguousarray(points), np.ascontiguousarray(facets, np.int32), CONTACT)
-    return pairs[:, 0].astype(np.int64), pairs[:, 1].astype(np.int64)
+    for some in np.array_split(pairs, len(pairs) // CHUNK + 1):
+        first, second = some.T.astype(np.int64)
+        yield first, second
+        yield second, first
 
 
 def _lies_on(points: Float, facets: Int, vertices: Int) -> Bool:

@@ -61,7 +61,7 @@ def check_count(mesh: Mesh, metric: NDArray[np.float64], scale: float) -> None:
     per_complexity = REAL_ELEMENTS_PER_COMPLEXITY[3]
     if per_complexity * densest * box <= MOST_CELLS:
         return
-    n_cells = per_complexity * complexity(mesh, metric) * scale**3
+    n_cells = per_complexity * complexity(mesh, metric) * scale * scale * scale
     if not n_cells <= MOST_CELLS:
         raise MeshingError(
             f"the metric asks for about {n_cells:.1e} cells, more than the {MOST_CELLS:.1e} that "

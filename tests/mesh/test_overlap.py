@@ -169,8 +169,12 @@ def test_no_facets_that_cross_or_touch_are_missed(dim):
         for column in range(dim):
             meets |= overlap._lies_on(points, facets[a], facets[b][:, column])
     assert meets.sum() >= 20
-    found = set(zip(*(x.tolist() for x in overlap._close_pairs(points, facets)), strict=True))
-    missed = {(int(a), int(b)) for a, b in zip(first[meets], second[meets], strict=True)} - found
+    found = {
+        pair
+        for first, second in overlap._close_pairs(points, facets)
+        for pair in zip(first.tolist(), second.tolist(), strict=True)
+    }
+    missed = set(zip(first[meets].tolist(), second[meets].tolist(), strict=True)) - found
     assert missed == set()
 
 
@@ -180,5 +184,5 @@ def test_parallel_needles_at_an_angle_are_no_pairs():
     corners[:, :, 0] = at[:, None] + [0.0, 1.0, 1.0]
     corners[:, :, 1] = -at[:, None] + [0.0, 1.0, 1.0]
     corners[:, 2, 2] = 1e-4
-    first, _ = overlap._close_pairs(corners.reshape(-1, 3), np.arange(9000).reshape(-1, 3))
-    assert len(first) == 0
+    pairs = overlap._close_pairs(corners.reshape(-1, 3), np.arange(9000).reshape(-1, 3))
+    assert sum(len(first) for first, _ in pairs) == 0

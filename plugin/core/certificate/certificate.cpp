@@ -105,7 +105,7 @@ template <std::size_t d> std::uint8_t DelaunayTest<d>::bits(Index cell) {
   reach_ = 0;
   for (unsigned k = 0; k <= d; ++k) {
     unsigned same = 0; // the first vertex with this metric
-    while (metric(same).entries != metric(k).entries)
+    while (same < k && metric(same).entries != metric(k).entries)
       ++same;
     if (same < k ? found >> same & 1 : violator(cell, metric(k)) == none)
       found |= 1u << k;

@@ -6,7 +6,8 @@
 namespace anistar {
 
 /// Whether vertices are moved until the stars agree. `when_possible` asks the metric:
-/// it must not vary too fast from vertex to vertex.
+/// it must not vary too fast from vertex to vertex; in 3D only for insertions to
+/// follow.
 enum class AgreementMode { off, when_possible, on };
 
 struct RemeshSettings {

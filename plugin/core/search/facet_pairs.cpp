@@ -2,6 +2,9 @@
 
 #include "search/box_tree.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace anistar {
 namespace {
 

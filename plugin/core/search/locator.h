@@ -21,7 +21,7 @@ template <std::size_t d> struct Location {
 };
 
 /// Finds the cell of a point by a walk, then by a box tree, and the nearest point of
-/// the mesh for points outside. The trees are made when a walk first fails. Safe for
+/// the mesh for points outside. Each tree is made when it is first needed. Safe for
 /// concurrent use.
 template <std::size_t d> class Locator {
 public:

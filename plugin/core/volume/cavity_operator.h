@@ -13,12 +13,12 @@ namespace anistar {
 /// What is better than a quality by a gain, or by a tenth of it: where the metric is
 /// far thinner than the domain no cell is good, and small steps up are large ones.
 [[nodiscard]] inline double better_by(double gain, double quality) {
-  return quality + std::min(gain, .1 * quality);
+  return quality + std::min(gain, .1 * std::abs(quality));
 }
 
 /// What the new cells must be like. The worst of them must reach `floor`, or be better
-/// than the worst old cell by `gain`, whichever asks less: so what is stuck below the
-/// floor can be repaired step by step.
+/// than the worst old cell (see better_by), whichever asks less: so what is stuck below
+/// the floor can be repaired step by step.
 struct Acceptance {
   double floor = 0;
   double gain = 1e-4;

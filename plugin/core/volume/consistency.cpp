@@ -72,12 +72,9 @@ struct Progress {
       since_best = 0;
     }
   }
-  [[nodiscard]] bool asks_for_agreement() {
-    const bool asks = failing <= agreeable && failing > good_progress * before &&
-                      since_agreement >= agreement_period;
-    if (asks)
-      since_agreement = 0;
-    return asks;
+  [[nodiscard]] bool asks_for_agreement() const {
+    return failing <= agreeable && failing > good_progress * before &&
+           since_agreement >= agreement_period;
   }
   [[nodiscard]] Effort effort(std::size_t n_bad) const {
     const bool is_stuck = since_best > 3 && n_bad <= few_failing;
@@ -356,12 +353,14 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
     const std::uint32_t since = ++volume.clock;
     const std::uint64_t round_seed = seed + 1 + std::uint64_t(counts.rounds);
     const bool agreeing = progress.asks_for_agreement();
-    if (agreeing)
+    if (agreeing) {
+      progress.since_agreement = 0;
       counts.moves += agree_volume(volume, monitor, hausdorff_number, round_seed,
                                    threads, agreement_persistence)
                           .moves;
-    else
+    } else {
       rounds.treat(bad, counts.rounds, progress.effort(bad.size()));
+    }
     // all of it, or the bits would be those of another mesh
     renew(
         volume, since, threads,

@@ -8,13 +8,14 @@
 
 namespace anistar {
 
-/// The same with the ridges that were given.
+/// What every remesher returns, with the ridges that were given.
 struct VolumeResult : RemeshResult<3> {
   std::vector<std::array<Index, 2>> edges;
   std::vector<Index> edge_tags;
 };
 
-/// @param background the input mesh with its metric
+/// @param metric at the points of the input mesh, which carry it from then on
+/// @param geometry surfaces and ridges that the new mesh follows
 /// @throws std::invalid_argument, and what the progress callback throws
 [[nodiscard]] VolumeResult
 remesh_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>> metric,
