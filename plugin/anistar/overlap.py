@@ -61,6 +61,15 @@ def crossing_facets(points: Float, facets: Int) -> tuple[int, int] | None:
     return None
 
 
+def doubled_cell(cells: Int, facets: Int) -> int | None:
+    """Return a cell with the points of another one, if there is any with all points on facets."""
+    on_facets = np.isin(cells, facets).all(axis=1)
+    rows = np.flatnonzero(on_facets)
+    _, first = np.unique(np.sort(cells[rows], axis=1), axis=0, return_index=True)
+    doubled = np.delete(rows, first)
+    return int(doubled[0]) if len(doubled) else None
+
+
 def covered_facet(points: Float, facets: Int) -> int | None:
     """Return a facet whose outer side is covered; facets must neither cross nor touch."""
     _, representative = np.unique(_components(facets, len(points)), return_index=True)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from . import _core
 from .errors import MeshingError
 from .mesh import Mesh
-from .overlap import crossing_facets, touching_point
+from .overlap import crossing_facets, doubled_cell, touching_point
 from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport
@@ -18,23 +18,27 @@ from .volume_demand import check_count, check_sizes
 
 
 def check_surfaces(mesh: Mesh, report: RemeshReport) -> None:
-    """Raise MeshingError if facets of a new mesh with curved surfaces cross or touch.
+    """Raise MeshingError if curved surfaces of a new mesh cross or touch, or bodies overlap.
 
     The mesher looks at the cells around each operation; sheets that come together across a gap
     outside of the domain are seen only here.
     """
     crossing = crossing_facets(mesh.points, mesh.facets)
+    touching = touching_point(mesh.points, mesh.facets) if crossing is None else None
+    doubled = doubled_cell(mesh.cells, mesh.facets)
     if crossing is not None:
         tags = tuple(mesh.facet_tags[list(crossing)].tolist())
         what = f"facets with tags {tags} cross"
         place = mesh.points[mesh.facets[crossing[0]]].mean(axis=0)
-    else:
-        touching = touching_point(mesh.points, mesh.facets)
-        if touching is None:
-            return
+    elif touching is not None:
         point, facet = touching
         what = f"a point lies on a facet with tag {mesh.facet_tags[facet]}"
         place = mesh.points[point]
+    elif doubled is not None:
+        what = f"two bodies with tag {mesh.cell_tags[doubled]} cover the same cell"
+        place = mesh.points[mesh.cells[doubled]].mean(axis=0)
+    else:
+        return
     x, y, z = place
     raise MeshingError(
         f"{what} near ({x:g}, {y:g}, {z:g}): curved surfaces come closer "

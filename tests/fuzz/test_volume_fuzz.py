@@ -6,7 +6,7 @@ from run import outcomes
 from volume_cases import make_volume_case, run_volume_case
 from volume_metrics import volume_metric
 
-from anistar import remesh, validate
+from anistar import MeshingError, remesh, validate
 
 N_CASES = 8
 
@@ -41,3 +41,9 @@ def test_what_went_wrong_once_goes_well(number):
     outcome = run_volume_case(make_volume_case(0, number, largest=3000.0))
     assert outcome.problem == ""
     assert outcome.stop == "finished"
+
+
+def test_bodies_that_are_pushed_over_each_other_are_refused():
+    case = make_volume_case(1, 10, largest=3000.0)
+    with pytest.raises(MeshingError, match="two bodies with tag 2 cover the same cell near"):
+        remesh(case.mesh, case.metric, case.options, geometry=case.geometry)

@@ -186,3 +186,10 @@ def test_parallel_needles_at_an_angle_are_no_pairs():
     corners[:, 2, 2] = 1e-4
     pairs = overlap._close_pairs(corners.reshape(-1, 3), np.arange(9000).reshape(-1, 3))
     assert sum(len(first) for first, _ in pairs) == 0
+
+
+def test_a_cell_that_is_there_twice_is_found_by_its_points_on_facets():
+    cells = np.array([[0, 1, 2, 3], [1, 2, 3, 4], [3, 2, 1, 0], [5, 6, 7, 8], [8, 7, 6, 5]])
+    facets = np.array([[0, 1, 2], [1, 2, 3], [2, 3, 4]])
+    assert overlap.doubled_cell(cells, facets) == 2
+    assert overlap.doubled_cell(cells[1:], facets) is None
