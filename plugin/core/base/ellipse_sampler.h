@@ -17,15 +17,16 @@ public:
   [[nodiscard]] Vector<d> step(double radius, CounterRandom &random) const {
     if constexpr (d == 2) {
       const double r = radius * std::sqrt(random.uniform());
-      const double angle = 2 * std::numbers::pi * random.uniform();
-      return product<2>(root_, Vector<2>(r * std::cos(angle), r * std::sin(angle)));
+      const auto [sine, cosine] =
+          elementary::sine_cosine(2 * std::numbers::pi * random.uniform());
+      return product<2>(root_, Vector<2>(r * cosine, r * sine));
     } else {
-      const double r = radius * std::cbrt(random.uniform());
-      const double angle = 2 * std::numbers::pi * random.uniform();
+      const double r = radius * elementary::cube_root(random.uniform());
+      const auto [sine, cosine] =
+          elementary::sine_cosine(2 * std::numbers::pi * random.uniform());
       const double height = 2 * random.uniform() - 1;
       const double flat = r * std::sqrt(1 - height * height);
-      return product<3>(
-          root_, Vector<3>(flat * std::cos(angle), flat * std::sin(angle), r * height));
+      return product<3>(root_, Vector<3>(flat * cosine, flat * sine, r * height));
     }
   }
 

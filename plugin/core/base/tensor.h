@@ -1,6 +1,8 @@
 #pragma once
 // Small vectors and symmetric tensors of dimension d: the algebra of metrics.
 
+#include "base/elementary.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -185,14 +187,31 @@ template <std::size_t d, class Function>
 /// @pre M is positive definite.
 template <std::size_t d>
 [[nodiscard]] inline SymmetricTensor<d> log(const SymmetricTensor<d> &M) {
-  return matrix_function(M, [](double x) { return std::log(x); });
+  return matrix_function(M, [](double x) { return elementary::log(x); });
 }
 
 namespace detail {
-/// (exp a - exp b) / (a - b).
-[[nodiscard]] inline double exp_difference(double a, double b) {
+/// (exp a - exp b) / (a - b), given these exponentials.
+[[nodiscard]] inline double exp_difference(double a, double b, double exp_a,
+                                           double exp_b) {
   const double h = a - b;
-  return std::exp(b) * (std::abs(h) < 1e-8 ? 1 + .5 * h : std::expm1(h) / h);
+  if (std::abs(h) > .5)
+    return (exp_a - exp_b) / h;
+  // (exp(h) - 1) / h by its series, where the difference cancels
+  double sum = 1;
+  for (int k = 14; k >= 2; --k)
+    sum = 1 + sum * h / k;
+  return exp_b * sum;
+}
+
+/// cos(acos(cosine) / 3) for 0 <= cosine <= 1: the root of 4 t^3 - 3 t = cosine in
+/// [sqrt(3) / 2, 1] by Newton steps, from a chord that is at most .01 away.
+[[nodiscard]] inline double cosine_of_third(double cosine) {
+  constexpr double at_zero = .8660254037844387;
+  double t = at_zero + (1 - at_zero) * cosine;
+  for (int step = 0; step < 3; ++step)
+    t = (8 * t * t * t + cosine) / (12 * t * t - 3);
+  return std::min(t, 1.);
 }
 
 /// Eigenvalues of a symmetric 3 x 3 tensor in decreasing order, to the square root of
@@ -211,10 +230,13 @@ close_eigenvalues(const SymmetricTensor<3> &A) {
   const double radius = std::sqrt(squares / 6);
   const double cosine =
       std::clamp(determinant<3>(D) / (2 * radius * radius * radius), -1., 1.);
-  const double angle = std::acos(cosine) / 3;
-  const double high = 2 * radius * std::cos(angle);
-  const double low = 2 * radius * std::cos(angle + 2.0943951023931953); // 2 pi / 3
-  return {mean + high, mean - high - low, mean + low};
+  // the third of the angle is below 30 degrees when the tensor is turned round
+  const double t = cosine_of_third(std::abs(cosine));
+  const double far = 2 * radius * t;
+  const double near = radius * (std::sqrt(3 * (1 - t * t)) + t);
+  if (cosine >= 0)
+    return {mean + far, mean - far + near, mean - near};
+  return {mean + near, mean + far - near, mean - far};
 }
 } // namespace detail
 
@@ -226,9 +248,13 @@ template <std::size_t d>
     constexpr double largest_range = 20;
     if (x - z < largest_range) {
       // Newton interpolation in x, y, z; exp is entire, so nearly equal nodes are fine
-      const double xy = detail::exp_difference(x, y), yz = detail::exp_difference(y, z);
+      const elementary::Pair ends = elementary::exp(elementary::Pair(x, z));
+      const double exp_y = elementary::exp(y);
+      const double xy = detail::exp_difference(x, y, ends[0], exp_y),
+                   yz = detail::exp_difference(y, z, exp_y, ends[1]);
+      // near each other: half of exp of their mean
       const double xyz =
-          x - z > 1e-4 ? (xy - yz) / (x - z) : .5 * std::exp((x + y + z) / 3);
+          x - z > 1e-4 ? (xy - yz) / (x - z) : .5 * exp_y * (1 + (x - 2 * y + z) / 3);
       SymmetricTensor<d> A = L, B = L, out;
       for (std::size_t i = 0; i < d; ++i) {
         A(i, i) -= x;
@@ -239,11 +265,11 @@ template <std::size_t d>
           out(i, j) = xy * A(i, j) +
                       xyz * (A(i, 0) * B(0, j) + A(i, 1) * B(1, j) + A(i, 2) * B(2, j));
       for (std::size_t i = 0; i < d; ++i)
-        out(i, i) += std::exp(x);
+        out(i, i) += ends[0];
       return out;
     }
   }
-  return matrix_function(L, [](double x) { return std::exp(x); });
+  return matrix_function(L, [](double x) { return elementary::exp(x); });
 }
 
 /// The lower triangular L with L L^T = M.

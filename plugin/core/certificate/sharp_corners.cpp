@@ -9,20 +9,22 @@ namespace {
 
 constexpr double sharp_angle = std::numbers::pi / 6;
 /// Of a cone whose opposite sides form the sharp angle.
-const double sharp_solid_angle = 2 * std::numbers::pi * (1 - std::cos(sharp_angle / 2));
+const double sharp_solid_angle =
+    2 * std::numbers::pi * (1 - elementary::sine_cosine(sharp_angle / 2).cosine);
 constexpr int max_exempt = 8;
 
 /// The angle between two vectors of any length (Kahan).
 template <std::size_t d> double angle_between(const Vector<d> &u, const Vector<d> &v) {
   const Vector<d> p = u * v.norm(), q = v * u.norm();
-  return 2 * std::atan2((p - q).norm(), (p + q).norm());
+  return 2 * elementary::angle_of((p - q).norm(), (p + q).norm());
 }
 
 /// The solid angle of a, b, c seen from the origin (Van Oosterom and Strackee, 1983).
 double solid_angle(const Vector<3> &a, const Vector<3> &b, const Vector<3> &c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2 * std::atan2(std::abs(a.dot(b.cross(c))),
-                        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  return 2 * elementary::angle_of(std::abs(a.dot(b.cross(c))),
+                                  la * lb * lc + a.dot(b) * lc + b.dot(c) * la +
+                                      c.dot(a) * lb);
 }
 
 /// The vertices of a cell but i and j: what two facets share.

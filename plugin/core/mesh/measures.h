@@ -36,7 +36,7 @@ template <std::size_t d>
     const double r = difference / sum;
     return .5 * sum * (1 - r * r / 3);
   }
-  return difference / std::log(la / lb);
+  return difference / elementary::log(la / lb);
 }
 
 template <std::size_t d>
@@ -72,7 +72,7 @@ template <std::size_t d>
                          quadratic<3>(M, Vector<3>(w - v));
   // the volume of the unit regular tetrahedron is sqrt(2) / 12
   const double det = u.dot(v.cross(w)) / dense->weight;
-  const double root = std::cbrt(det * std::numbers::sqrt2);
+  const double root = elementary::cube_root(det * std::numbers::sqrt2);
   return std::copysign(6 * root * root / squares, det);
 }
 
@@ -139,7 +139,7 @@ template <std::size_t d>
 /// (Vol / e^d)^(1/d), the sliverity ratio of section 3.2 of RR-7712 v2.
 template <std::size_t d>
 [[nodiscard]] inline double sliverity(double volume, double shortest) {
-  return std::pow(volume, 1. / d) / shortest;
+  return (d == 2 ? std::sqrt(volume) : elementary::cube_root(volume)) / shortest;
 }
 
 } // namespace anistar

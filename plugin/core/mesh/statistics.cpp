@@ -92,7 +92,7 @@ DistortionQuantiles quantiles(std::vector<double> values) {
     const auto at = values.begin() + k;
     std::nth_element(sorted, at, values.end());
     sorted = at;
-    return std::log(*at);
+    return elementary::log(*at);
   };
   const double p50 = quantile(.5), p90 = quantile(.9), p99 = quantile(.99);
   return {p50, p90, p99, quantile(1)};
@@ -149,10 +149,7 @@ double distortion(const SymmetricTensor<2> &M, const SymmetricTensor<2> &N) {
 double distortion(const SymmetricTensor<3> &M, const SymmetricTensor<3> &N) {
   // the largest eigenvalue of N in M; a closed form loses digits of the others only
   const auto stretch = [](const SymmetricTensor<3> &A, const SymmetricTensor<3> &B) {
-    Eigen::SelfAdjointEigenSolver<Matrix<3>> solver;
-    solver.computeDirect(as_matrix(congruent<3>(lower_factor(A), B)),
-                         Eigen::EigenvaluesOnly);
-    return solver.eigenvalues()[2];
+    return detail::close_eigenvalues(congruent<3>(lower_factor(A), B))[0];
   };
   return std::sqrt(std::max({1., stretch(M, N), stretch(N, M)}));
 }

@@ -11,8 +11,8 @@ template <std::size_t d> std::vector<Vector<d>> directions() {
   if constexpr (d == 2) {
     constexpr int n = 8;
     for (int k = 0; k < n; ++k) {
-      const double angle = 2 * std::numbers::pi * k / n;
-      out.emplace_back(std::cos(angle), std::sin(angle));
+      const auto [sine, cosine] = elementary::sine_cosine(2 * std::numbers::pi * k / n);
+      out.emplace_back(cosine, sine);
     }
   } else {
     for (int x = -1; x <= 1; ++x)

@@ -98,7 +98,7 @@ private:
   /// Metrics only grow, so a vertex can only move to an earlier bucket; the entry it
   /// leaves behind no longer matches and is passed over.
   void enqueue(std::size_t v) {
-    const double octaves = std::log2(densest_ / density(result_.metric[v]));
+    const double octaves = elementary::log2(densest_ / density(result_.metric[v]));
     const auto bucket = static_cast<std::size_t>(
         std::clamp(octaves * buckets_per_octave + bucket_shift, 0.0, last_bucket));
     if (bucket == bucket_[v])
@@ -130,7 +130,7 @@ private:
 
   Asking asking(std::size_t v) const {
     const SymmetricTensor<d> &M = result_.metric[v];
-    const double order = std::rint(std::log(density(M)) * log_steps);
+    const double order = std::rint(elementary::log(density(M)) * log_steps);
     return {v, order, M, needs_spectrum() ? spectrum(M) : Spectrum<d>{}};
   }
 

@@ -18,13 +18,14 @@ constexpr double straight_turn = 1e-6;
 /// A tangent that leaves its chord at a larger angle than this (its cosine) is no
 /// sample of a smooth curve: the segment stays straight, and the curve within a fifth
 /// of its length.
-const double steepest_tangent = std::cos(40 * std::numbers::pi / 180);
+const double steepest_tangent =
+    elementary::sine_cosine(40 * std::numbers::pi / 180).cosine;
 /// Where an arc meets its tangent line, the polyline turns by half the turn between two
 /// chords of the arc; a turn well beyond that is a corner.
 constexpr double tangent_turn_factor = 1.5;
 
 double turn(const Vector<2> &u, const Vector<2> &v) {
-  return std::abs(std::atan2(cross(u, v), u.dot(v)));
+  return std::abs(elementary::angle_of(cross(u, v), u.dot(v)));
 }
 
 /// Tangent at b of the circle through a, b, c.
@@ -333,7 +334,8 @@ double relative_sagitta(const Curve &curve, double t0, double t1) {
     const Vector<2> r = curve.at(t) - a;
     const double along = r.dot(chord) / length;
     const double past = std::max({0., -along, along - length});
-    worst = std::max(worst, std::hypot(cross(chord, r) / length, past) / length);
+    worst =
+        std::max(worst, elementary::length(cross(chord, r) / length, past) / length);
   };
   for (double k = 1; k < 4; ++k)
     consider(t0 + (t1 - t0) * k / 4);

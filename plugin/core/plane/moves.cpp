@@ -24,7 +24,7 @@ void add_circumcentre(const Vertex<2> &v, const Vertex<2> &a, const Vertex<2> &b
                       Weighted &mean) {
   const SymmetricTensor<2> M = v.weight * v.M + a.weight * a.M + b.weight * b.M;
   const double area = cross(a.x - v.x, b.x - v.x);
-  const double weight = area / std::cbrt(v.weight * a.weight * b.weight);
+  const double weight = area / elementary::cube_root(v.weight * a.weight * b.weight);
   mean.sum += weight * circumcircle(M, v.x, a.x, b.x).offset;
   mean.weight += weight;
 }
@@ -37,7 +37,7 @@ Vector<2> pliant_displacement(const Triangulation<2> &mesh, const Vertex<2> &v,
   const auto pull = [&](const Vertex<2> &neighbour) {
     const double length = edge_length(v, neighbour);
     const double fourth = length * length * length * length;
-    force -= ((1 - fourth) * std::exp(-fourth) / length) * (neighbour.x - v.x);
+    force -= ((1 - fourth) * elementary::exp(-fourth) / length) * (neighbour.x - v.x);
   };
   for (HalfFacet h : star)
     pull(mesh.vertex(mesh.facet(h)[0]));

@@ -46,7 +46,7 @@ public:
     for (Leg &leg : legs_) {
       const double s = std::min(1., table(leg).total());
       leg.direction = at(leg, parameter(leg, s)) - x_;
-      leg.angle = std::atan2(leg.direction[1], leg.direction[0]);
+      leg.angle = elementary::angle_of(leg.direction[1], leg.direction[0]);
     }
     std::sort(legs_.begin(), legs_.end(),
               [](const Leg &a, const Leg &b) { return a.angle < b.angle; });
@@ -76,7 +76,7 @@ public:
       radii.push_back(distance(leg, given_cut(leg)));
     }
     for (int k = -n_radii; k <= n_radii; ++k)
-      radii.push_back(std::exp2(.5 * k / n_radii));
+      radii.push_back(elementary::exp2(.5 * k / n_radii));
     std::vector<Cut> best;
     double least = natural;
     for (double radius : radii) {
@@ -104,7 +104,7 @@ private:
   std::vector<Leg> legs_; ///< counter-clockwise
 
   [[nodiscard]] static double deviation(double length) {
-    return std::abs(std::log(length));
+    return std::abs(elementary::log(length));
   }
   [[nodiscard]] const Curve &curve(const Leg &leg) const {
     return geometry_.curves[leg.curve];
@@ -154,7 +154,7 @@ private:
   [[nodiscard]] double angle_between(const Leg &a, const Leg &b) const {
     const double sine = std::sqrt(determinant<2>(M_)) * cross(a.direction, b.direction);
     const double cosine = product<2>(M_, a.direction).dot(b.direction);
-    const double angle = std::atan2(sine, cosine);
+    const double angle = elementary::angle_of(sine, cosine);
     return angle < 0 ? angle + 2 * std::numbers::pi : angle;
   }
 

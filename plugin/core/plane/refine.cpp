@@ -35,7 +35,7 @@ constexpr double most_growth = 8;
 SymmetricTensor<2> mean_metric(const Vertex<2> &a, const Vertex<2> &b,
                                const Vertex<2> &c) {
   SymmetricTensor<2> M = a.weight * a.M + b.weight * b.M + c.weight * c.M;
-  const double density = 1 / std::cbrt(a.weight * b.weight * c.weight);
+  const double density = 1 / elementary::cube_root(a.weight * b.weight * c.weight);
   return M *= density / std::sqrt(determinant<2>(M));
 }
 
@@ -67,7 +67,7 @@ public:
   }
   /// No cell that waits has a larger radius.
   [[nodiscard]] double level() const {
-    return largest_radius * std::exp2(.25 * static_cast<double>(top_ + 1));
+    return largest_radius * elementary::exp2(.25 * static_cast<double>(top_ + 1));
   }
   void clear() {
     for (std::vector<Entry> &bucket : buckets_)
@@ -107,7 +107,7 @@ private:
     const double radius = circle_of(cell).radius;
     if (!(radius > target_)) // also when round-off has made it NaN
       return;
-    const double level = 4 * std::log2(radius / largest_radius);
+    const double level = 4 * elementary::log2(radius / largest_radius);
     const std::size_t b = std::min(n_buckets - 1, static_cast<std::size_t>(level));
     buckets_[b].push_back({cell, w_.mesh.at(cell)});
     top_ = std::max(top_, b);
@@ -298,7 +298,7 @@ double metric_area(const Triangulation<2> &mesh, const CellRange &cells,
     double weights = 1;
     for (Index v : mesh.cells[c])
       weights *= mesh.vertex(v).weight;
-    sum += .5 * cross(s[1] - s[0], s[2] - s[0]) / std::cbrt(weights);
+    sum += .5 * cross(s[1] - s[0], s[2] - s[0]) / elementary::cube_root(weights);
   }
   return sum;
 }

@@ -9,7 +9,7 @@ constexpr double shortest_kept = .64, longest_kept = 1.5;
 /// Where the metric jumps, its interpolation may not last: no end may see much more.
 constexpr double longest_kept_at_end = 2;
 /// |ln l| up to here is free: a little inside the bounds of a unit edge.
-const double unit_excess = std::log(longest_unit) - .03;
+const double unit_excess = elementary::log(longest_unit) - .03;
 
 } // namespace
 
@@ -46,7 +46,7 @@ StarScore Relocation::score() const {
     out.longest_at_end = std::max({out.longest_at_end, lv, lu});
     out.shortest = std::min(out.shortest, l);
     out.longest = std::max(out.longest, l);
-    out.excess += std::max(0., std::abs(std::log(l)) - unit_excess);
+    out.excess += std::max(0., std::abs(elementary::log(l)) - unit_excess);
   };
   for (HalfFacet h : star_) {
     const auto [a, b] = mesh_.facet(h);

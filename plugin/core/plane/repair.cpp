@@ -153,8 +153,9 @@ private:
     Score best_score = before;
     for (double radius : radii)
       for (int k = 0; k < n_directions; ++k) {
-        const double angle = 2 * std::numbers::pi * k / n_directions;
-        const Vector<2> direction(radius * std::cos(angle), radius * std::sin(angle));
+        const auto [sine, cosine] =
+            elementary::sine_cosine(2 * std::numbers::pi * k / n_directions);
+        const Vector<2> direction(radius * cosine, radius * sine);
         const Vector<2> x = from.x + product<2>(step, direction);
         if (!sees_link(x))
           continue;

@@ -11,7 +11,8 @@ namespace {
 
 /// A tangent that leaves its chord at a larger angle (its cosine) is no sample of a
 /// smooth curve: the edge stays straight.
-const double steepest_tangent = std::cos(40 * std::numbers::pi / 180);
+const double steepest_tangent =
+    elementary::sine_cosine(40 * std::numbers::pi / 180).cosine;
 /// Chords that leave a tangent by less (radians) are straight: above the noise of
 /// coordinates in a text file, below the turn of any sampled curve.
 constexpr double straight_turn = 1e-7;

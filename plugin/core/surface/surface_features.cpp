@@ -64,7 +64,8 @@ public:
   Classifier(const SurfaceInput &input,
              const std::function<bool(Index, Index)> &has_ridge_at)
       : in_(input), has_ridge_at_(has_ridge_at),
-        cosine_(std::cos(input.ridge_angle * std::numbers::pi / 180)) {}
+        cosine_(elementary::sine_cosine(input.ridge_angle * std::numbers::pi / 180)
+                    .cosine) {}
 
   Features run() {
     collect_sides();
