@@ -7,11 +7,13 @@ namespace anistar::bindings {
 
 void bind_certify(nanobind::module_ &module);
 void bind_combination(nanobind::module_ &module);
+void bind_elementary(nanobind::module_ &module);
 void bind_facet_pairs(nanobind::module_ &module);
 void bind_gradation(nanobind::module_ &module);
 void bind_locator(nanobind::module_ &module);
 void bind_nearest(nanobind::module_ &module);
 void bind_remesh(nanobind::module_ &module);
+void bind_spectra(nanobind::module_ &module);
 void bind_supermesh(nanobind::module_ &module);
 void bind_tet_shape(nanobind::module_ &module);
 void bind_vertex_graph(nanobind::module_ &module);

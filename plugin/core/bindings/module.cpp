@@ -4,11 +4,13 @@ NB_MODULE(_core, module) {
   module.doc() = "The compiled core of anistar.";
   anistar::bindings::bind_certify(module);
   anistar::bindings::bind_combination(module);
+  anistar::bindings::bind_elementary(module);
   anistar::bindings::bind_facet_pairs(module);
   anistar::bindings::bind_gradation(module);
   anistar::bindings::bind_locator(module);
   anistar::bindings::bind_nearest(module);
   anistar::bindings::bind_remesh(module);
+  anistar::bindings::bind_spectra(module);
   anistar::bindings::bind_supermesh(module);
   anistar::bindings::bind_tet_shape(module);
   anistar::bindings::bind_vertex_graph(module);

@@ -1,34 +1,18 @@
-"""The compiled kernels, or their NumPy counterparts where the core is not built."""
+"""Gradation, and the graph that it goes along."""
 
 from __future__ import annotations
-
-from importlib import import_module
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import graph as graphs
-from . import growth, simultaneous_reduction
-from .graph import VertexGraph
-from .growth import Growth
-from .mesh import MeshLike
+from .. import graph as graphs
+from .. import growth
+from ..graph import VertexGraph
+from ..growth import Growth
+from ..mesh import MeshLike
+from . import compiled
 
 Array = NDArray[np.float64]
-
-core: Any
-try:
-    core = import_module(".._core", __package__)
-except ImportError:  # the package is used by itself
-    core = None
-
-
-def intersect(M: Array, N: Array) -> Array:
-    """Intersect checked metrics (n, d, d), see `combination.intersected`."""
-    if core is None:
-        return simultaneous_reduction.intersect(M, N)
-    result: Array = core.intersect(M, N)
-    return result
 
 
 def grade(
@@ -48,9 +32,9 @@ def grade(
         "max_distortion": max_distortion,
         "tolerance": tolerance,
     }
-    if core is None:
+    if compiled.core is None:
         return growth.grade(points, metric, graph, model=model, max_rounds=max_rounds, **bounds)
-    graded, rounds, updates, converged = core.grade(
+    graded, rounds, updates, converged = compiled.core.grade(
         np.ascontiguousarray(points, dtype=np.float64),
         metric,
         graph.offsets,
@@ -64,8 +48,8 @@ def grade(
 
 def wide_graph(mesh: MeshLike) -> VertexGraph:
     """Return the graph of the edges and opposite vertices, see `graph.wide_graph`."""
-    if core is None:
+    if compiled.core is None:
         return graphs.wide_graph(mesh)
     cells = np.ascontiguousarray(mesh.cells, dtype=np.int32)
-    offsets, neighbours = core.wide_graph(cells, len(mesh.points))
+    offsets, neighbours = compiled.core.wide_graph(cells, len(mesh.points))
     return VertexGraph(offsets=offsets, neighbours=neighbours)

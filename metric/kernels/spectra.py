@@ -1,0 +1,29 @@
+"""Spectra of symmetric tensors, many at once."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import jacobi
+from . import compiled
+
+Array = NDArray[np.float64]
+
+
+def spectra(T: Array) -> tuple[Array, Array]:
+    """Eigenvalues (n, d), increasing, and eigenvectors (n, d, d) in columns, see `jacobi`."""
+    if compiled.core is None or T.shape[-1] not in (2, 3):
+        return jacobi.spectra(T)
+    values, vectors = compiled.core.spectra(np.ascontiguousarray(T, dtype=np.float64))
+    return values, vectors
+
+
+def compose(values: Array, vectors: Array) -> Array:
+    """Return the tensors ``vectors diag(values) vectors^T`` (n, d, d), exactly symmetric."""
+    if compiled.core is None or vectors.shape[-1] not in (2, 3):
+        return jacobi.compose(values, vectors)
+    tensors: Array = compiled.core.compose(
+        np.ascontiguousarray(values), np.ascontiguousarray(vectors)
+    )
+    return tensors

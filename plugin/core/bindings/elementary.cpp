@@ -1,0 +1,73 @@
+#include "base/elementary.h"
+#include "arrays.h"
+#include "bind.h"
+
+namespace anistar::bindings {
+namespace {
+
+using Values = Array1<double>;
+
+/// `function` of all the values, two at a time.
+template <class Function>
+nb::ndarray<nb::numpy, double> mapped(Values values, Function function) {
+  const std::size_t n = values.size();
+  std::vector<double> out(n);
+  {
+    nb::gil_scoped_release release;
+    const double *x = values.data();
+    for (std::size_t i = 0; i < n; i += 2) {
+      const elementary::Pair y =
+          function(elementary::Pair(x[i], x[std::min(i + 1, n - 1)]));
+      out[i] = y[0];
+      if (i + 1 < n)
+        out[i + 1] = y[1];
+    }
+  }
+  return owned(std::move(out), {n});
+}
+
+nb::ndarray<nb::numpy, double> exp(Values values) {
+  return mapped(values, [](const elementary::Pair &x) { return elementary::exp(x); });
+}
+
+nb::ndarray<nb::numpy, double> log(Values values) {
+  return mapped(values, [](const elementary::Pair &x) { return elementary::log(x); });
+}
+
+nb::ndarray<nb::numpy, double> power(Values values, double exponent) {
+  return mapped(values, [=](const elementary::Pair &x) {
+    return elementary::power(x, exponent);
+  });
+}
+
+nb::ndarray<nb::numpy, double> cosine(Values values) {
+  return mapped(values, [](const elementary::Pair &x) {
+    return elementary::Pair(elementary::sine_cosine(x[0]).cosine,
+                            elementary::sine_cosine(x[1]).cosine);
+  });
+}
+
+nb::ndarray<nb::numpy, double> angle_of(Values y, Values x) {
+  if (x.size() != y.size())
+    throw std::invalid_argument("x and y must have as many values");
+  std::vector<double> out(x.size());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = elementary::angle_of(y.data()[i], x.data()[i]);
+  return owned(std::move(out), {x.size()});
+}
+
+} // namespace
+
+void bind_elementary(nb::module_ &module) {
+  module.def("exp", &exp, nb::arg("values").noconvert(), "exp of values (n,).");
+  module.def("log", &log, nb::arg("values").noconvert(),
+             "Natural logarithm of values (n,).");
+  module.def("power", &power, nb::arg("values").noconvert(), nb::arg("exponent"),
+             "A power of values (n,) that are not negative.");
+  module.def("cosine", &cosine, nb::arg("values").noconvert(),
+             "Cosine of angles (n,) in radians.");
+  module.def("angle_of", &angle_of, nb::arg("y").noconvert(), nb::arg("x").noconvert(),
+             "The angles (n,) of the vectors (x, y), in [-pi, pi].");
+}
+
+} // namespace anistar::bindings
