@@ -13,6 +13,7 @@ from .estimate import elements_per_complexity
 from .field_hessians import FieldHessian
 from .finishing import Finishing
 from .growth import Growth
+from .kernels.elementary import power
 from .options import MetricOptions
 from .rootfind import COMPLEXITY_TOLERANCE, Evaluation, rescaling
 
@@ -140,10 +141,10 @@ def _at_error(
             field.error(finishing.mesh, growth.metric, options.p) / field.scale
             for field in found.values()
         ]
-        return (max(*errors, SMALLEST_ERROR * target) / target) ** (-d / 2.0), growth
+        return power(max(*errors, SMALLEST_ERROR * target) / target, -d / 2.0), growth
 
     growth, best, evaluations = rescaling(attempt, 1.0, d)
-    error = target * best.complexity ** (-2.0 / d)
+    error = target * power(best.complexity, -2.0 / d)
     reached = best.complexity >= 1.0 - COMPLEXITY_TOLERANCE
     complexity = finishing.complexity(growth.metric)
     message = f"predicted error {error:.3g} after {len(evaluations)} evaluations"

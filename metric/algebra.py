@@ -16,116 +16,30 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .kernels.elementary import exp, log
+from .kernels.spectra import compose, spectra
+
 Array = NDArray[np.float64]
-
-CANCELLATION = 1e-3
-"""Below this ratio of two eigenvalues the smaller one is taken from the determinant."""
-
-MAX_SWEEPS = 16
-"""Of Jacobi rotations; 4 to 6 are needed, with quadratic convergence at the end."""
-
-NEGLIGIBLE_SQUARE = 1e-32
-"""An entry b is round-off beside the diagonal entries a and c when b^2 is below this times a c."""
 
 
 def eigh(T: Array) -> tuple[Array, Array]:
     """Eigenvalues (n, d), increasing, and eigenvectors (n, d, d) in columns of symmetric `T`."""
-    if T.shape[-1] != 2:
-        values, vectors = np.linalg.eigh(T)
-        return values, vectors
-    a, b, c = T[:, 0, 0], T[:, 0, 1], T[:, 1, 1]
-    half = 0.5 * (a - c)
-    radius = np.hypot(half, b)
-    values = _eigenvalues_2d(a, b, c, radius)
-    # the eigenvector of the upper eigenvalue, from the row without cancellation
-    x = np.where(half >= 0.0, radius + half, b)
-    y = np.where(half >= 0.0, b, radius - half)
-    norm = np.hypot(x, y)
-    isotropic = norm == 0.0
-    norm[isotropic] = 1.0
-    x = np.where(isotropic, 1.0, x / norm)
-    y = y / norm
-    vectors = np.empty_like(T)
-    vectors[:, 0, 0], vectors[:, 1, 0] = -y, x
-    vectors[:, 0, 1], vectors[:, 1, 1] = x, y
-    return values, vectors
+    return spectra(T)
 
 
 def eigenvalues(T: Array) -> Array:
     """Eigenvalues (n, d) of symmetric `T`, increasing."""
-    if T.shape[-1] != 2:
-        values: Array = np.linalg.eigvalsh(T)
-        return values
-    a, b, c = T[:, 0, 0], T[:, 0, 1], T[:, 1, 1]
-    return _eigenvalues_2d(a, b, c, np.hypot(0.5 * (a - c), b))
+    return spectra(T)[0]
 
 
-def _eigenvalues_2d(a: Array, b: Array, c: Array, radius: Array) -> Array:
-    mean = 0.5 * (a + c)
-    large = mean + np.copysign(radius, mean)
-    small = mean - np.copysign(radius, mean)
-    # the quotient is accurate where the difference cancels
-    cancelled = np.abs(small) < CANCELLATION * np.abs(large)
-    np.divide(a * c - b * b, large, out=small, where=cancelled)
-    return np.stack([np.minimum(small, large), np.maximum(small, large)], axis=1)
+def product(A: Array, B: Array) -> Array:
+    """Return the products ``A B`` of stacked matrices (..., i, j) and (..., j, k)."""
+    return np.asarray(np.einsum("...ij,...jk->...ik", A, B))
 
 
-def definite_eigh(T: Array) -> tuple[Array, Array]:
-    """Eigenvalues and eigenvectors of positive definite `T` by Jacobi rotations, in no order.
-
-    Small eigenvalues are as accurate as the entries allow however large the others are [1]_;
-    methods that reduce to tridiagonal form lose what lies below the largest by 1e16.
-
-    References
-    ----------
-    .. [1] Demmel, Veselic, Jacobi's method is more accurate than QR, SIAM Journal on Matrix
-       Analysis and Applications 13, 1992.
-    """
-    n, d = T.shape[:2]
-    A = np.array(T)
-    V = np.tile(np.eye(d), (n, 1, 1))
-    for _ in range(MAX_SWEEPS):
-        rotations = [_rotate(A, V, p, q) for p in range(d) for q in range(p + 1, d)]
-        if not any(rotations):
-            break
-    return np.diagonal(A, axis1=1, axis2=2).copy(), V
-
-
-def _rotate(A: Array, V: Array, p: int, q: int) -> bool:
-    """Make the entries (p, q) of `A` zero in place, gather the rotations in `V`; whether any."""
-    a, b, c = A[:, p, p], A[:, p, q], A[:, q, q]
-    active = np.flatnonzero(b * b > NEGLIGIBLE_SQUARE * np.abs(a * c))
-    if active.size == 0:
-        return False
-    a, b, c = a[active], b[active], c[active]
-    cotangent = (c - a) / (2.0 * b)
-    t = np.copysign(1.0, cotangent) / (np.abs(cotangent) + np.sqrt(1.0 + cotangent**2))
-    cosine = 1.0 / np.sqrt(1.0 + t**2)
-    sine = t * cosine
-    for r in range(A.shape[1]):
-        if r not in (p, q):
-            x, y = A[active, r, p], A[active, r, q]
-            A[active, r, p] = A[active, p, r] = cosine * x - sine * y
-            A[active, r, q] = A[active, q, r] = sine * x + cosine * y
-        x, y = V[active, r, p], V[active, r, q]
-        V[active, r, p] = cosine * x - sine * y
-        V[active, r, q] = sine * x + cosine * y
-    A[active, p, p] = a - t * b
-    A[active, q, q] = c + t * b
-    A[active, p, q] = A[active, q, p] = 0.0
-    return True
-
-
-def compose(values: Array, vectors: Array) -> Array:
-    """Return the tensors ``vectors diag(values) vectors^T`` (n, d, d), exactly symmetric."""
-    T = np.empty_like(vectors)
-    d = values.shape[-1]
-    for i in range(d):
-        for j in range(i + 1):
-            entry = (values * vectors[:, i, :] * vectors[:, j, :]).sum(axis=1)
-            T[:, i, j] = entry
-            T[:, j, i] = entry
-    return T
+def norms(v: Array) -> Array:
+    """Euclidean norms (...,) of vectors (..., d)."""
+    return np.asarray(np.sqrt((v * v).sum(axis=-1)))
 
 
 def spectral(T: Array, function: Callable[[Array], Array]) -> Array:
@@ -136,12 +50,12 @@ def spectral(T: Array, function: Callable[[Array], Array]) -> Array:
 
 def log_metric(M: Array) -> Array:
     """Matrix logarithm (n, d, d) of positive definite `M`."""
-    return spectral(M, np.log)
+    return spectral(M, log)
 
 
 def exp_metric(L: Array) -> Array:
     """Matrix exponential (n, d, d) of symmetric `L`."""
-    return spectral(L, np.exp)
+    return spectral(L, exp)
 
 
 def sqrt_metric(M: Array) -> Array:
@@ -182,31 +96,45 @@ def interpolated(M: Array, weights: Array) -> Array:
     return exp_metric(np.einsum("mk,mkij->mij", weights, logs))
 
 
-def determinant(M: Array) -> Array:
-    """Return the determinants (n,) of symmetric `M`."""
-    if M.shape[-1] == 2:
-        det: Array = M[:, 0, 0] * M[:, 1, 1] - M[:, 0, 1] * M[:, 1, 0]
+def determinant(A: Array) -> Array:
+    """Return the determinants (n,) of matrices (n, d, d)."""
+    if A.shape[-1] == 2:
+        det: Array = A[:, 0, 0] * A[:, 1, 1] - A[:, 0, 1] * A[:, 1, 0]
         return det
-    return np.asarray(np.linalg.det(M))
+    return np.asarray(np.einsum("ni,ni->n", A[:, 0], np.cross(A[:, 1], A[:, 2])))
 
 
 def log_determinant(M: Array) -> Array:
     """Logarithm (n,) of the determinant of positive definite `M`, without overflow."""
-    if M.shape[-1] == 2:
-        return np.asarray(np.log(eigenvalues(M)).sum(axis=1))
-    pivots = np.diagonal(np.linalg.cholesky(M), axis1=1, axis2=2)  # 4 times faster than spectra
-    return np.asarray(2.0 * np.log(pivots).sum(axis=1))
+    pivots = np.diagonal(lower_factor(M), axis1=1, axis2=2)
+    return np.asarray(2.0 * log(pivots).sum(axis=1))
 
 
 def lower_factor(M: Array) -> Array:
-    """Cholesky factor L (n, d, d), lower triangular, with ``L L^T = M``."""
-    if M.shape[-1] != 2:
-        return np.linalg.cholesky(M)
-    L = np.zeros_like(M)
-    L[:, 0, 0] = np.sqrt(M[:, 0, 0])
-    L[:, 1, 0] = M[:, 1, 0] / L[:, 0, 0]
-    L[:, 1, 1] = np.sqrt(M[:, 1, 1] - L[:, 1, 0] ** 2)
+    """Cholesky factor L (n, d, d), lower triangular, with ``L L^T = M``.
+
+    NaN where `M` is not positive definite.
+    """
+    L = np.zeros(M.shape)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for j in range(M.shape[-1]):
+            for i in range(j, M.shape[-1]):
+                rest = M[:, i, j] - sum(L[:, i, k] * L[:, j, k] for k in range(j))
+                L[:, i, j] = np.sqrt(rest) if i == j else rest / L[:, j, j]
     return L
+
+
+def inverse(M: Array) -> Array:
+    """Return the inverses (n, d, d) of positive definite `M`, exactly symmetric."""
+    identity = np.broadcast_to(np.eye(M.shape[-1]), M.shape)
+    half = forward_substituted(lower_factor(M), identity)
+    return product(half.transpose(0, 2, 1), half)
+
+
+def solved(M: Array, right: Array) -> Array:
+    """Return the solutions x (n, d) of ``M x = right`` for positive definite `M` (n, d, d)."""
+    half = forward_substituted(lower_factor(M), np.eye(M.shape[-1])[None].repeat(len(M), axis=0))
+    return np.asarray(np.einsum("nij,ni->nj", half, np.einsum("nij,nj->ni", half, right)))
 
 
 def congruent(L: Array, T: Array) -> Array:

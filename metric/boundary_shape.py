@@ -9,11 +9,15 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from .algebra import eigh
+from .algebra import eigh, norms, product
+from .kernels.elementary import angle_of, cosine
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int32]
 Places = NDArray[np.intp]
+
+SMALLEST_RATIO = 1e-10
+"""Of two eigenvalues of a normal matrix; below, the fit is not determined in that direction."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,19 +55,19 @@ def curve_shape(points: Array, segments: Index, tags: Index, ridge_angle: float)
     left, right = ends[start[inner], 1], ends[start[inner] + 1, 1]
     before, after = points[inner] - points[left], points[right] - points[inner]
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    turn = np.abs(np.arctan2(cross, np.einsum("ki,ki->k", before, after)))
+    turn = np.abs(angle_of(cross, np.einsum("ki,ki->k", before, after)))
     smooth = (turn <= ridge_angle) & (both[start[inner]] == both[start[inner] + 1])
     inner, cross = inner[smooth], cross[smooth]
     chord = points[right[smooth]] - points[left[smooth]]
-    length = np.linalg.norm(chord, axis=1)
-    sides = np.linalg.norm(before[smooth], axis=1) * np.linalg.norm(after[smooth], axis=1)
+    length = norms(chord)
+    sides = norms(before[smooth]) * norms(after[smooth])
     curvature = np.zeros(n)
     curvature[inner] = 2.0 * cross / (sides * length)
     is_inner = np.zeros(n, dtype=bool)
     is_inner[inner] = True
     outer = ends[~is_inner[ends[:, 0]]]
     arm = points[outer[:, 1]] - points[outer[:, 0]]
-    arm /= np.linalg.norm(arm, axis=1)[:, None]
+    arm /= norms(arm)[:, None]
     return BoundaryShape(
         points=np.concatenate([inner, outer[:, 0]]),
         directions=np.concatenate([chord / length[:, None], arm])[:, :, None],
@@ -107,13 +111,11 @@ def _patches(points: Array, triangles: Index, tags: Index, ridge_angle: float) -
     i, j = order[first], order[first + 1]
     origin = points[edges[i, 0]]
     along = points[edges[i, 1]] - origin
-    along /= np.linalg.norm(along, axis=1)[:, None]
+    along /= norms(along)[:, None]
     arms = [points[apex[k]] - origin for k in (i, j)]
     arms = [arm - np.einsum("ki,ki->k", arm, along)[:, None] * along for arm in arms]
-    cosine = -np.einsum("ki,ki->k", *arms) / np.prod(
-        [np.linalg.norm(arm, axis=1) for arm in arms], axis=0
-    )
-    smooth = (cosine >= np.cos(ridge_angle)) & (tags[owner[i]] == tags[owner[j]])
+    turn = -np.einsum("ki,ki->k", *arms) / (norms(arms[0]) * norms(arms[1]))
+    smooth = (turn >= cosine(ridge_angle)) & (tags[owner[i]] == tags[owner[j]])
     i, j = owner[i[smooth]], owner[j[smooth]]
     graph = sparse.csr_array((np.ones(len(i), dtype=np.int8), (i, j)), shape=(m, m))
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int32)
@@ -126,7 +128,7 @@ def _frames(corners: Array, nodes: Places, n_nodes: int) -> Array:
     no common orientation.
     """
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(normal, axis=1)
+    area = norms(normal)
     outer = normal[:, :, None] * normal[:, None, :] / area[:, None, None]
     sums = np.zeros((n_nodes, 3, 3))
     for column in nodes.T:
@@ -165,24 +167,32 @@ def _quadrics(local: Array, centre: Places, n_nodes: int) -> tuple[Array, Array]
             entry = np.bincount(centre, weight * rows[:, i] * rows[:, j], minlength=n_nodes)
             normal[:, i, j] = normal[:, j, i] = entry
     # patches with fewer than five neighbours have the fit of least norm
-    inverse = np.linalg.pinv(normal, rcond=1e-10, hermitian=True)
-    fit = np.matmul(inverse, right[:, :, None])[:, :, 0]
+    fit = _least_norm(normal, right)
     size = np.sqrt(np.where(mean > 0.0, mean, 1.0))
     second = np.stack([fit[:, [2, 3]], fit[:, [3, 4]]], axis=1) / size[:, None, None]
     return fit[:, :2], second
+
+
+def _least_norm(A: Array, right: Array) -> Array:
+    """Return the solutions (n, k) of least norm of ``A x = right``, A semidefinite (n, k, k)."""
+    values, vectors = eigh(A)
+    kept = values > SMALLEST_RATIO * values[:, -1:]
+    along = np.einsum("nij,ni->nj", vectors, right)
+    along = np.divide(along, values, out=np.zeros_like(along), where=kept)
+    return np.asarray(np.einsum("nij,nj->ni", vectors, along))
 
 
 def _principal(vertex: Places, frames: Array, gradient: Array, second: Array) -> BoundaryShape:
     """Principal curvatures and directions of the graphs over the tangent planes."""
     # the eigenvalues increase, so the normal is the last column
     tangents = frames[:, :, :2] + frames[:, :, 2:] * gradient[:, None, :]
-    first = np.matmul(tangents.transpose(0, 2, 1), tangents)
+    first = product(tangents.transpose(0, 2, 1), tangents)
     values, vectors = eigh(first)
-    root = np.matmul(vectors / np.sqrt(values)[:, None, :], vectors.transpose(0, 2, 1))
+    root = product(vectors / np.sqrt(values)[:, None, :], vectors.transpose(0, 2, 1))
     slope = np.sqrt(1.0 + (gradient**2).sum(axis=1))[:, None, None]
-    curvatures, axes = eigh(np.matmul(np.matmul(root, second), root) / slope)
+    curvatures, axes = eigh(product(product(root, second), root) / slope)
     return BoundaryShape(
         points=vertex,
-        directions=np.matmul(np.matmul(tangents, root), axes),
+        directions=product(product(tangents, root), axes),
         curvatures=curvatures,
     )

@@ -84,9 +84,9 @@ def clipped(M: Array, h_min: Array | None, h_max: Array | None, a_max: Array | N
         return M
     values, vectors = eigh(M)
     if h_max is not None:
-        values = np.maximum(values, h_max**-2.0)
+        values = np.maximum(values, 1.0 / h_max**2)
     if h_min is not None:
-        values = np.minimum(values, h_min**-2.0)
+        values = np.minimum(values, 1.0 / h_min**2)
     if a_max is not None:
         values = np.maximum(values, values[:, -1:] / a_max**2)
     return compose(values, vectors)

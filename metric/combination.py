@@ -8,10 +8,10 @@ from functools import reduce
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import kernels
-from .algebra import compose, congruent, definite_eigh, exp_metric, log_metric, lower_factor
+from .algebra import compose, congruent, eigh, exp_metric, log_metric, lower_factor, product
 from .checks import check_metric, check_result
 from .ellipsoids import largest_inside
+from .kernels.intersection import intersect
 
 Array = NDArray[np.float64]
 
@@ -60,7 +60,7 @@ def intersection_of(metrics: Sequence[Array], rule: str) -> Array:
     """Intersect checked metrics by a checked rule."""
     if rule == "john" and len(metrics) > 2:
         return largest_inside(metrics)
-    return reduce(kernels.intersect, metrics)
+    return reduce(intersect, metrics)
 
 
 def check_rule(rule: str) -> None:
@@ -147,8 +147,8 @@ def limited_step(current: Array, target: Array, ratio: float = 2.0) -> Array:
     n, d = start.shape[:2]
     result = check_metric(target, n_points=n, dim=d, name="target metric")
     L = lower_factor(start)
-    values, vectors = definite_eigh(congruent(L, result))
-    held = np.clip(values, ratio**-2.0, ratio**2.0)
+    values, vectors = eigh(congruent(L, result))
+    held = np.clip(values, 1.0 / ratio**2, ratio**2)
     far = np.flatnonzero((held != values).any(axis=1))
-    result[far] = compose(held[far], np.matmul(L[far], vectors[far]))
+    result[far] = compose(held[far], product(L[far], vectors[far]))
     return check_result(result, "the limited step")

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .algebra import log_determinant
 from .checks import check_metric
+from .kernels.elementary import exp
 from .mesh import MeshLike, cell_volumes
 
 Array = NDArray[np.float64]
@@ -68,13 +69,13 @@ def integral_of_exponential(cells: NDArray[np.int32], volumes: Array, exponent: 
     if not np.isfinite(top):
         return 0.0
     factor = factorial(cells.shape[1] - 1)
-    return float(np.exp(top) * factor * np.dot(volumes, exp_divided_difference(values - top)))
+    return float(exp(float(top)) * factor * (volumes * exp_divided_difference(values - top)).sum())
 
 
 def exp_divided_difference(nodes: Array) -> Array:
     """Divided difference exp[x_0, ..., x_k] for rows of `nodes` (m, k + 1), increasing."""
     if nodes.shape[1] == 1:
-        return np.asarray(np.exp(nodes[:, 0]))
+        return exp(nodes[:, 0])
     spread = nodes[:, -1] - nodes[:, 0]
     near = spread < SERIES_SPREAD
     result = np.empty(len(nodes))
@@ -98,4 +99,4 @@ def _series(nodes: Array) -> Array:
         for i in range(1, k + 1):
             homogeneous[i] = homogeneous[i - 1] + columns[i] * homogeneous[i]
         total += homogeneous[-1] / factorial(j + k)
-    return np.asarray(np.exp(mean) * total)
+    return np.asarray(exp(mean) * total)

@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from . import kernels
+from .algebra import product
 from .boundary_shape import BoundaryShape, curve_shape, surface_shape
 from .checks import check_result
+from .kernels.intersection import intersect
 from .mesh import MeshLike, diameter
 from .sizes import from_sizes
 
@@ -141,13 +142,14 @@ def _selected(
 def _intersect_along(M: Array, shape: BoundaryShape, h: Array, h_normal: float) -> None:
     """Intersect `M` in place with the metrics of the shapes; a point may have several."""
     d = M.shape[-1]
-    along = np.matmul(shape.directions * h[:, None, :] ** -2.0, shape.directions.transpose(0, 2, 1))
-    projection = np.matmul(shape.directions, shape.directions.transpose(0, 2, 1))
-    metrics = along + (np.eye(d) - projection) * h_normal**-2.0
+    across = shape.directions.transpose(0, 2, 1)
+    along = product(shape.directions / h[:, None, :] ** 2, across)
+    projection = product(shape.directions, across)
+    metrics = along + (np.eye(d) - projection) / h_normal**2
     metrics = 0.5 * (metrics + metrics.transpose(0, 2, 1))
     order = np.argsort(shape.points, kind="stable")
     while order.size:
         _, first = np.unique(shape.points[order], return_index=True)
         turn = order[first]
-        M[shape.points[turn]] = kernels.intersect(M[shape.points[turn]], metrics[turn])
+        M[shape.points[turn]] = intersect(M[shape.points[turn]], metrics[turn])
         order = np.delete(order, first)

@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from .algebra import norms
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
@@ -20,7 +22,7 @@ def distance_to_facets(points: Array, facets: Array) -> Array:
     than the best distance plus the largest radius of a facet cannot be nearer.
     """
     centres = facets.mean(axis=1)
-    radius = float(np.linalg.norm(facets - centres[:, None], axis=2).max())
+    radius = float(norms(facets - centres[:, None]).max())
     tree = cKDTree(centres)
     best = np.full(len(points), np.inf)
     todo = np.arange(len(points))
@@ -48,14 +50,14 @@ def _to_segment(x: Array, a: Array, b: Array) -> Array:
     along = np.einsum("ni,ni->n", x - a, v)
     length = np.maximum(np.einsum("ni,ni->n", v, v), np.finfo(float).tiny)
     share = np.clip(along / length, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(x - a - share[:, None] * v, axis=1))
+    return np.asarray(norms(x - a - share[:, None] * v))
 
 
 def _to_triangle(x: Array, triangle: Array) -> Array:
     a, b, c = triangle.transpose(1, 0, 2)
     sides = [_to_segment(x, a, b), _to_segment(x, b, c), _to_segment(x, c, a)]
     normal = np.cross(b - a, c - a)
-    length = np.linalg.norm(normal, axis=1)
+    length = norms(normal)
     normal /= np.maximum(length, np.finfo(float).tiny)[:, None]
     inside = length > 0.0
     for start, end in ((a, b), (b, c), (c, a)):

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from .algebra import congruent, eigenvalues, lower_factor
 from .checks import check_metric
 from .graph import mesh_edges
+from .kernels.elementary import log
 from .mesh import MeshLike
 
 Array = NDArray[np.float64]
@@ -47,7 +48,7 @@ def distortion(mesh: MeshLike, M: Array) -> Array:
     M = check_metric(M, n_points=n, dim=d)
     p, q = mesh_edges(mesh).T
     ratio = eigenvalues(congruent(lower_factor(M[p]), M[q]))
-    gamma = 0.5 * np.maximum(np.log(ratio[:, -1]), -np.log(ratio[:, 0]))
+    gamma = 0.5 * np.maximum(log(ratio[:, -1]), -log(ratio[:, 0]))
     return np.asarray(gamma / edge_lengths(mesh.points[q] - mesh.points[p], M[p], M[q]))
 
 
@@ -58,6 +59,6 @@ def edge_lengths(v: Array, start: Array, end: Array) -> Array:
     """
     a = np.sqrt(np.einsum("ei,eij,ej->e", v, start, v))
     b = np.sqrt(np.einsum("ei,eij,ej->e", v, end, v))
-    ratio = np.log(a / b)
+    ratio = log(a / b)
     near = np.abs(ratio) < 1e-6
     return np.asarray(np.where(near, 0.5 * (a + b), (a - b) / np.where(near, 1.0, ratio)))

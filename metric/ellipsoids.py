@@ -9,15 +9,18 @@ from itertools import combinations, combinations_with_replacement
 import numpy as np
 from numpy.typing import NDArray
 
-from . import kernels
 from .algebra import (
     congruent,
-    definite_eigh,
     eigenvalues,
+    eigh,
+    inverse,
     log_determinant,
     lower_factor,
+    product,
+    solved,
     sqrt_metric,
 )
+from .kernels.intersection import intersect
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -55,7 +58,7 @@ def largest_inside(metrics: Sequence[Array]) -> Array:
     .. [1] Boyd, Vandenberghe, Convex Optimization, 2004, section 8.4.2.
     .. [2] The same, section 11.3.
     """
-    result = reduce(kernels.intersect, metrics)
+    result = reduce(intersect, metrics)
     rest = _where_two_do_not_decide(result, metrics)
     for block in np.array_split(rest, len(rest) // BLOCK + 1):
         part = [M[block] for M in metrics]
@@ -71,9 +74,9 @@ def _where_two_do_not_decide(result: Array, metrics: Sequence[Array]) -> Index:
     """
     undecided = np.arange(len(result))
     for i, j in combinations(range(len(metrics)), 2):
-        pair = kernels.intersect(metrics[i][undecided], metrics[j][undecided])
+        pair = intersect(metrics[i][undecided], metrics[j][undecided])
         others = [M[undecided] for k, M in enumerate(metrics) if k not in (i, j)]
-        all_together = reduce(kernels.intersect, others, pair)
+        all_together = reduce(intersect, others, pair)
         decided = log_determinant(all_together) - log_determinant(pair) <= 2.0 * GAP
         result[undecided[decided]] = all_together[decided]
         undecided = undecided[~decided]
@@ -84,11 +87,11 @@ def _by_barrier(pairwise: Array, metrics: Sequence[Array]) -> Array:
     """Solve the problem in the basis of the pairwise intersection, and come back."""
     L = lower_factor(pairwise)
     roots = np.stack([sqrt_metric(_lifted(congruent(L, M))) for M in metrics], axis=1)
-    values, vectors = definite_eigh(_barrier_method(roots))
-    arms = np.matmul(L, vectors) / np.sqrt(values)[:, None, :]
-    inside = np.matmul(arms, arms.transpose(0, 2, 1))
+    values, vectors = eigh(_barrier_method(roots))
+    arms = product(L, vectors) / np.sqrt(values)[:, None, :]
+    inside = product(arms, arms.transpose(0, 2, 1))
     # the last product rounds: the metrics are put in once more
-    return reduce(kernels.intersect, metrics, inside)
+    return reduce(intersect, metrics, inside)
 
 
 def _lifted(S: Array) -> Array:
@@ -102,7 +105,7 @@ def _barrier_method(roots: Array) -> Array:
     """Maximise log det X subject to ``R_i X R_i <= I`` for the roots R (n, k, d, d)."""
     n, k, d, _ = roots.shape
     basis = _symmetric_basis(d)
-    X = np.linalg.inv(np.matmul(roots, roots).sum(axis=1) + 0.5 * np.eye(d))
+    X = inverse(product(roots, roots).sum(axis=1) + 0.5 * np.eye(d))
     weight = np.ones(n)
     last = k * d / GAP
     todo = np.arange(n)
@@ -123,17 +126,17 @@ def _barrier_method(roots: Array) -> Array:
 def _newton_step(X: Array, roots: Array, weight: Array, basis: Array) -> tuple[Array, Array]:
     """Damped Newton step for ``-weight log det X - sum log det(I - R X R)``, and the decrement."""
     n, k, d, _ = roots.shape
-    slack = np.eye(d) - np.matmul(np.matmul(roots, X[:, None]), roots)
-    pull = np.matmul(np.matmul(roots, np.linalg.inv(slack)), roots)
-    inverse = np.linalg.inv(X)
-    gradient = pull.sum(axis=1) - weight[:, None, None] * inverse
+    slack = np.eye(d) - product(product(roots, X[:, None]), roots)
+    pull = product(product(roots, inverse(slack.reshape(-1, d, d)).reshape(slack.shape)), roots)
+    peak = inverse(X)
+    gradient = pull.sum(axis=1) - weight[:, None, None] * peak
     g = np.einsum("nij,aij->na", gradient, basis)
-    hessian = weight[:, None, None] * _curvature(inverse[:, None], basis)
+    hessian = weight[:, None, None] * _curvature(peak[:, None], basis)
     hessian += _curvature(pull, basis)
-    coefficients = -np.linalg.solve(hessian, g[:, :, None])[:, :, 0]
+    coefficients = -solved(hessian, g)
     decrement = np.sqrt(np.maximum(-np.einsum("na,na->n", g, coefficients), 0.0))
     step = np.einsum("na,aij->nij", coefficients, basis)
-    pushed = np.matmul(np.matmul(roots, step[:, None]), roots)
+    pushed = product(product(roots, step[:, None]), roots)
     outward = _largest_ratio(pushed.reshape(-1, d, d), slack.reshape(-1, d, d)).reshape(n, k)
     fastest = np.maximum(outward.max(axis=1), _largest_ratio(-step, X))
     to_boundary = 1.0 / np.maximum(fastest, np.finfo(float).tiny)
@@ -149,10 +152,10 @@ def _largest_ratio(A: Array, B: Array) -> Array:
 def _curvature(A: Array, basis: Array) -> Array:
     """Sum over k of ``tr(A_k B_a A_k B_b)`` for A (n, k, d, d) and the basis B: (n, a, b)."""
     n, k, d, _ = A.shape
-    images = np.matmul(A[:, None], basis[:, None])  # (n, a, k, d, d)
+    images = product(A[:, None], basis[:, None])  # (n, a, k, d, d)
     rows = images.reshape(n, len(basis), k * d * d)
     columns = images.transpose(0, 2, 4, 3, 1).reshape(n, k * d * d, len(basis))
-    return np.asarray(np.matmul(rows, columns))
+    return product(rows, columns)
 
 
 def _symmetric_basis(d: int) -> Array:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .algebra import congruent, lower_factor
 from .checks import check_metric, check_tensors
+from .kernels.elementary import power
 from .mesh import MeshLike, cell_volumes, point_volumes
 
 Array = NDArray[np.float64]
@@ -72,7 +73,7 @@ def predicted_error(mesh: MeshLike, M: Array, H: Array, *, p: float = 2.0) -> fl
     if np.isinf(p) or largest == 0.0:
         return largest
     mass = point_volumes(mesh, cell_volumes(mesh))
-    return float(largest * np.dot(mass, (local / largest) ** p) ** (1.0 / p))
+    return largest * power(float((mass * power(local / largest, p)).sum()), 1.0 / p)
 
 
 def local_error(M: Array, H: Array) -> Array:
@@ -104,7 +105,7 @@ def _power_mean(p: float, d: int) -> float:
     barycentric = np.diff(np.concatenate([ends[0], sorted_, ends[1]], axis=1), axis=1)
     shape = _shape(barycentric)
     largest = float(shape.max())  # a large power of it would vanish
-    return largest * float(np.mean((shape / largest) ** p) ** (1.0 / p))
+    return largest * power(float(np.mean(power(shape / largest, p))), 1.0 / p)
 
 
 def _shape(barycentric: Array) -> Array:

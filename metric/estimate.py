@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .algebra import determinant
 from .checks import check_metric
 from .complexity import REAL_ELEMENTS_PER_COMPLEXITY, complexity
 from .distortion import distortion, edge_lengths
@@ -108,7 +109,7 @@ def elements_per_complexity(mesh: MeshLike, M: Array, distortions: Array | None 
 def mean_distortion(mesh: MeshLike, M: Array, distortions: Array) -> float:
     """Mean of the distortion over the edges, each weighted by the unit edges that it stands for."""
     edges = mesh_edges(mesh)
-    density = point_volumes(mesh, cell_volumes(mesh)) * np.sqrt(np.linalg.det(M))
+    density = point_volumes(mesh, cell_volumes(mesh)) * np.sqrt(determinant(M))
     share = density / np.bincount(edges.ravel(), minlength=len(density))
     return float(np.average(distortions, weights=share[edges].sum(axis=1)))
 

@@ -13,6 +13,7 @@ from .bounds import check_bounds
 from .combination import intersection_of
 from .error_model import predicted_error
 from .graph import VertexGraph
+from .kernels.elementary import power
 from .mesh import MeshLike
 from .normalisation import SMALLEST_FLOOR
 from .options import MetricOptions
@@ -49,9 +50,11 @@ class FieldHessian:
     def error(self, mesh: MeshLike, M: Array, p: float) -> float:
         """Predicted Lp norm of the error on a unit mesh of `M`, over all components."""
         parts = self.components.transpose(1, 0, 2, 3)
-        return self.unit * float(
-            np.linalg.norm([predicted_error(mesh, M, part, p=p) for part in parts], ord=p)
-        )
+        errors = np.array([predicted_error(mesh, M, part, p=p) for part in parts])
+        largest = float(errors.max())
+        if np.isinf(p) or largest == 0.0:
+            return self.unit * largest
+        return self.unit * largest * power(float(power(errors / largest, p).sum()), 1.0 / p)
 
 
 def hessians_of(

@@ -14,7 +14,7 @@ from .complexity import integral_of_exponential
 from .gradation import TOLERANCE, GrowthLaw, grade_on
 from .graph import VertexGraph
 from .growth import Growth
-from .kernels import wide_graph
+from .kernels.gradation import wide_graph
 from .ledger import Stage
 from .mesh import MeshLike, cell_volumes, diameter
 from .options import MetricOptions

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass
-from math import inf, log
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import kernels
 from .checks import check_metric
 from .graph import VertexGraph
 from .growth import Growth
+from .kernels.elementary import log
+from .kernels.gradation import grade, wide_graph
 from .mesh import MeshLike
 
 Array = NDArray[np.float64]
@@ -133,7 +134,7 @@ def graded(
     check_tolerance(tolerance)
     if law.is_off:
         return M
-    return grade_on(kernels.wide_graph(mesh), mesh.points, M, law, tolerance).metric
+    return grade_on(wide_graph(mesh), mesh.points, M, law, tolerance).metric
 
 
 def check_tolerance(tolerance: float) -> None:
@@ -146,7 +147,7 @@ def grade_on(
     graph: VertexGraph, points: Array, M: Array, law: GrowthLaw, tolerance: float = TOLERANCE
 ) -> Growth:
     """Grade a checked metric along a graph that is at hand."""
-    result = kernels.grade(
+    result = grade(
         points,
         M,
         graph,

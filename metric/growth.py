@@ -8,8 +8,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import compose, determinant, eigh
+from .algebra import compose, determinant, eigh, norms
 from .graph import VertexGraph
+from .kernels.elementary import log
 from .simultaneous_reduction import intersection
 
 Array = NDArray[np.float64]
@@ -25,6 +26,9 @@ LAST_BUCKET = 1000 * BUCKETS_PER_OCTAVE
 
 LOG_STEPS = 2.0**20
 """Determinants count as equal when their logarithms are, to this many parts of one."""
+
+LOG2_E = 1.4426950408889634
+"""Logarithm of e to the base 2."""
 
 IDLE = np.iinfo(np.int64).max
 
@@ -117,7 +121,7 @@ def _model_growth(
     uniform: Array = 1.0 + metric_length * log_factor
     if model == "metric":
         return uniform
-    length = np.linalg.norm(v, axis=1)[:, None]
+    length = norms(v)[:, None]
     physical: Array = 1.0 + np.sqrt(values) * length * log_factor
     if model == "physical":
         return physical
@@ -132,14 +136,14 @@ def _density(M: Array) -> Array:
 
 def _buckets(M: Array, densest: float) -> NDArray[np.int64]:
     """Bucket of the queue for each metric, the densest first."""
-    octaves = np.log2(densest / _density(M))
+    octaves = log(densest / _density(M)) * LOG2_E
     shifted = np.clip(octaves * BUCKETS_PER_OCTAVE + BUCKET_SHIFT, 0.0, LAST_BUCKET)
     return np.asarray(shifted.astype(np.int64))
 
 
 def _order(points: Array, M: Array) -> NDArray[np.intp]:
     """Order of a front: the densest first, and equally dense ones by their points."""
-    density = np.rint(np.log(_density(M)) * LOG_STEPS)
+    density = np.rint(log(_density(M)) * LOG_STEPS)
     return np.lexsort((*points.T[::-1], -density))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import exp_metric, log_metric
+from .algebra import determinant, exp_metric, log_metric, product
 from .checks import check_result
 from .mesh import MeshLike
 
@@ -64,8 +64,19 @@ def _cell_metrics(mesh: MeshLike) -> Array:
     """Metrics (m, d, d) in which all edges of a cell have length one."""
     d = mesh.points.shape[1]
     edges = mesh.points[mesh.cells[:, 1:]] - mesh.points[mesh.cells[:, :1]]
-    flat = np.flatnonzero(np.linalg.det(edges) == 0.0)
+    flat = np.flatnonzero(determinant(edges) == 0.0)
     if flat.size:
         raise ValueError(f"cell {flat[0]} has no volume, so it implies no metric")
-    to_unit = np.linalg.solve(edges, np.broadcast_to(UNIT_SIMPLEX[d], edges.shape))
-    return np.asarray(np.matmul(to_unit, to_unit.transpose(0, 2, 1)))
+    to_unit = np.einsum("mij,jk->mik", _inverses(edges), UNIT_SIMPLEX[d])
+    return product(to_unit, to_unit.transpose(0, 2, 1))
+
+
+def _inverses(edges: Array) -> Array:
+    """Inverses (m, d, d) of matrices of edges, by their cofactors."""
+    if edges.shape[-1] == 2:
+        (a, b), (c, e) = edges.transpose(1, 2, 0)
+        cofactors = np.stack([np.stack([e, -c], axis=-1), np.stack([-b, a], axis=-1)], axis=1)
+    else:
+        u, v, w = edges.transpose(1, 0, 2)
+        cofactors = np.stack([np.cross(v, w), np.cross(w, u), np.cross(u, v)], axis=1)
+    return np.asarray(cofactors.transpose(0, 2, 1) / determinant(edges)[:, None, None])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import exp, log
-
 import numpy as np
 import scipy  # loads scipy.optimize, 9 MB, when it is first used
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +10,7 @@ from .algebra import absolute, compose, eigh
 from .bounds import bounded
 from .checks import check_tensors
 from .complexity import complexity
+from .kernels.elementary import exp, log, power
 from .mesh import MeshLike, cell_volumes, diameter
 from .normalisation import SMALLEST_FLOOR, check_target
 
@@ -76,8 +75,8 @@ def dwr_metric(
         raise ValueError(f"order must be positive, got {order}")
     d = mesh.points.shape[1]
     errors = _checked(indicators, len(mesh.cells))
-    density = _density(mesh, errors ** (1.0 / (order / d + 1.0)))
-    base = density[:, None, None] ** (2.0 / d) * _shapes(mesh, H)
+    density = _density(mesh, power(errors, 1.0 / (order / d + 1.0)))
+    base = power(density, 2.0 / d)[:, None, None] * _shapes(mesh, H)
     largest = diameter(mesh) if h_max is None else h_max
 
     def scaled(log_factor: float) -> Array:
@@ -128,4 +127,4 @@ def _shapes(mesh: MeshLike, H: Array | None) -> Array:
     largest = values.max(axis=1, keepdims=True)
     values = np.where(largest > 0.0, values / np.where(largest > 0.0, largest, 1.0), 1.0)
     values = np.maximum(values, SMALLEST_FLOOR)
-    return compose(values / np.prod(values, axis=1, keepdims=True) ** (1.0 / d), vectors)
+    return compose(values / power(np.prod(values, axis=1, keepdims=True), 1.0 / d), vectors)

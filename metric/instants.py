@@ -110,7 +110,7 @@ def from_instants(
     def attempt(factor: float) -> tuple[float, list[Growth]]:
         pairs = zip(finishings, bases, strict=True)
         growths = [finishing.finished(factor * base) for finishing, base in pairs]
-        return float(np.dot(steps, _complexities(finishings, growths))), growths
+        return float((steps * _complexities(finishings, growths)).sum()), growths
 
     dim = meshes[0].points.shape[1]
     growths, best, evaluations = rescaling(attempt, options.target_complexity, dim)

@@ -7,6 +7,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from .algebra import norms
+
 Array = NDArray[np.float64]
 
 
@@ -55,4 +57,4 @@ def point_volumes(mesh: MeshLike, volumes: Array) -> Array:
 
 def diameter(mesh: MeshLike) -> float:
     """Length of the diagonal of the bounding box."""
-    return float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
+    return float(norms(np.ptp(mesh.points, axis=0)))

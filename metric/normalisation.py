@@ -13,6 +13,7 @@ from .bounds import Bound, check_bounds
 from .checks import check_result, check_tensors
 from .complexity import integral_of_exponential
 from .error_model import predicted_error
+from .kernels.elementary import exp, log, power
 from .mesh import MeshLike, cell_volumes, diameter, point_volumes
 
 Array = NDArray[np.float64]
@@ -221,16 +222,16 @@ def optimal(fields: Sequence[HessianField], C: float, p: float) -> list[Array]:
     d = fields[0].values.shape[1]
     inner, outer = _exponents(p, d)
     floored = _floored(fields, C, p)
-    log_dets = [np.log(values).sum(axis=1) for values in floored]
+    log_dets = [log(values).sum(axis=1) for values in floored]
     total = sum(
-        field.steps ** (2.0 * inner)
+        power(field.steps, 2.0 * inner)
         * integral_of_exponential(field.cells, field.volumes, inner * log_det)
         for field, log_det in zip(fields, log_dets, strict=True)
     )
     metrics = []
     for field, values, log_det in zip(fields, floored, log_dets, strict=True):
-        factor = (C / total) ** (2.0 / d) * field.steps ** (-2.0 * outer)
-        scaled = values * (factor * np.exp(-outer * log_det))[:, None]
+        factor = power(C / total, 2.0 / d) * power(field.steps, -2.0 * outer)
+        scaled = values * (factor * exp(-outer * log_det))[:, None]
         metrics.append(compose(scaled, field.vectors))
     return metrics
 
@@ -240,13 +241,13 @@ def _for_error(
 ) -> Array:
     """Return the optimal metric with the predicted error, found by its law C^(-2/d)."""
     d = field.values.shape[1]
-    coarsest = C = float(field.volumes.sum()) / float(field.size.max()) ** d
+    coarsest = C = float(field.volumes.sum()) / power(float(field.size.max()), d)
     for _ in range(ERROR_STEPS):
         M = optimal([field], C, p)[0]
         ratio = predicted_error(mesh, M, H, p=p) / target_error
         if abs(ratio - 1.0) <= ERROR_TOLERANCE or (ratio < 1.0 and coarsest == C):
             break
-        C = max(coarsest, C * ratio ** (d / 2.0))
+        C = max(coarsest, C * power(ratio, d / 2.0))
     return M
 
 
@@ -272,11 +273,11 @@ def _floored(fields: Sequence[HessianField], C: float, p: float) -> list[Array]:
     for _ in range(FLOOR_STEPS):
         integral = 0.0
         for field, values, floor in zip(fields, relative, floors, strict=True):
-            density = np.exp(inner * np.log(np.maximum(values, floor)).sum(axis=1))
-            integral += field.steps ** (2.0 * inner) * float(np.dot(field.mass, density))
+            density = exp(inner * log(np.maximum(values, floor)).sum(axis=1))
+            integral += power(field.steps, 2.0 * inner) * float((field.mass * density).sum())
         for i, field in enumerate(fields):
-            featureless = (C / integral) ** (-2.0 / d) * field.size**-2.0
-            floor = (featureless * field.steps ** (2.0 * outer)) ** (1.0 / (2.0 * inner))
+            featureless = power(C / integral, -2.0 / d) / field.size**2
+            floor = power(featureless * power(field.steps, 2.0 * outer), 1.0 / (2.0 * inner))
             floors[i] = np.clip(floor, SMALLEST_FLOOR, 1.0)
     return [
         np.asarray(largest * np.maximum(values, floor))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import exp, inf, log
+from math import inf
 from typing import TypeVar
+
+from .kernels.elementary import exp, log
 
 Outcome = TypeVar("Outcome")
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import compose, congruent, definite_eigh, lower_factor
+from . import jacobi
+from .algebra import compose, congruent, lower_factor, product
 
 Array = NDArray[np.float64]
 
@@ -28,9 +29,9 @@ def intersection(M: Array, N: Array, tolerance: float) -> tuple[Array, NDArray[n
     is positive semidefinite, so the result is never coarser.
     """
     L = lower_factor(M)
-    values, vectors = definite_eigh(congruent(L, N))
+    values, vectors = jacobi.spectra(congruent(L, N))
     changed = values.max(axis=1, initial=0.0) > 1.0 + tolerance
     result = M.copy()
     gain = np.maximum(values[changed] - 1.0, 0.0)
-    result[changed] += compose(gain, np.matmul(L[changed], vectors[changed]))
+    result[changed] += compose(gain, product(L[changed], vectors[changed]))
     return result, changed

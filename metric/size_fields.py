@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import log
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .algebra import norms
 from .distance import distance_to_facets
 from .gradation import GrowthLaw
+from .kernels.elementary import log
 from .mesh import MeshLike, diameter
 
 Array = NDArray[np.float64]
@@ -61,7 +62,7 @@ def size_near_points(
     sizes = _check_sizes(h, len(places))
     result = np.full(len(mesh.points), np.inf)
     for place, size in zip(places, sizes, strict=True):
-        away = np.linalg.norm(mesh.points - place, axis=1)
+        away = norms(mesh.points - place)
         result = np.minimum(result, _grown(mesh, size, away - radius, growth, h_far))
     return result
 
@@ -85,7 +86,7 @@ def size_in_box(
         raise ValueError(f"a box needs low <= high, each of {d} numbers, got {low!r} and {high!r}")
     size = _check_sizes(h, 1)[0]
     outside = np.maximum(np.maximum(corners[0] - mesh.points, mesh.points - corners[1]), 0.0)
-    return _grown(mesh, size, np.linalg.norm(outside, axis=1), growth, h_far)
+    return _grown(mesh, size, norms(outside), growth, h_far)
 
 
 def size_near_boundary(

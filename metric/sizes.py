@@ -40,6 +40,6 @@ def from_sizes(h: ArrayLike, dim: int = 2) -> NDArray[np.float64]:
         raise ValueError(f"size at point {bad[0]} must be positive and finite: {sizes[bad[0]]}")
     M = np.zeros((*sizes.shape, sizes.shape[1]))
     axis = np.arange(sizes.shape[1])
-    with np.errstate(over="ignore"):
-        M[:, axis, axis] = sizes**-2.0
+    with np.errstate(over="ignore", divide="ignore"):
+        M[:, axis, axis] = 1.0 / sizes**2
     return check_result(M, "the squares of the sizes")

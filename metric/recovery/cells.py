@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ..algebra import product
 from ..mesh import MeshLike, point_volumes
 
 Array = NDArray[np.float64]
@@ -72,7 +73,7 @@ class CellGeometry:
             part = slice(start, start + BLOCK)
             values = columns[self.cells[part]]
             rise = values[:, 1:] - values[:, :1]
-            np.matmul(rise.transpose(0, 2, 1), self.slopes[part], out=gradients[part])
+            gradients[part] = product(rise.transpose(0, 2, 1), self.slopes[part])
         return gradients
 
     def slope(self, corner: int) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ..algebra import eigh
+from ..algebra import eigh, product
 from .least_squares import Equations, factored, gain, residual, solved
 
 Array = NDArray[np.float64]
@@ -297,7 +297,7 @@ def _hessians(second: Array, pairs: list[tuple[int, int]], scaling: Array) -> Ar
     for c, (i, j) in zip(second, pairs, strict=True):
         local[:, :, i, j] = local[:, :, j, i] = c.T
     S = scaling[:, None]
-    return np.asarray(np.matmul(np.matmul(S, local), S))
+    return product(product(S, local), S)
 
 
 def _scaled(v: Array, scaling: Array, counts: NDArray[np.int32]) -> Array:
@@ -319,7 +319,7 @@ def _basis(around: _Patches, cloud: Cloud, pairs: list[tuple[int, int]]) -> list
     basis = [*xi, *(xi[i] * xi[j] * (0.5 if i == j else 1.0) for i, j in pairs)]
     if cloud.spread is not None and pairs:
         S = np.repeat(around.scaling, around.counts, axis=0)
-        spread = np.matmul(np.matmul(S, cloud.spread[around.members]), S)
+        spread = product(product(S, cloud.spread[around.members]), S)
         for a, (i, j) in enumerate(pairs):
             basis[len(xi) + a] += spread[:, i, j] * (0.5 if i == j else 1.0)
     if cloud.at_vertices is None:
@@ -352,4 +352,4 @@ def _inverse_root(covariance: Array) -> Array:
     values, vectors = eigh(covariance)
     values = np.maximum(values, FLATTEST_PATCH * values[:, -1:])
     root = vectors / np.sqrt(values)[:, None, :]
-    return np.asarray(np.matmul(root, vectors.transpose(0, 2, 1)))
+    return product(root, vectors.transpose(0, 2, 1))

@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ..algebra import determinant, product
+from ..kernels.elementary import power
 from .fit import Cloud, fit_patches
 
 Array = NDArray[np.float64]
@@ -67,8 +69,8 @@ def estimated_noise(points: Array, cloud: Cloud, neighbours: sparse.csr_array, l
     noise = np.zeros(cloud.values.shape[1])
     if not is_known.any():
         return noise
-    sizes = [np.sqrt(np.linalg.det(fits.covariance[is_known])) for fits in (small, large)]
-    growth = np.maximum(sizes[1] / sizes[0], 1.5) ** (6.0 / points.shape[1])
+    sizes = [np.sqrt(determinant(fits.covariance[is_known])) for fits in (small, large)]
+    growth = power(np.maximum(sizes[1] / sizes[0], 1.5), 6.0 / points.shape[1])
     before, after = small.residual[is_known] ** 2, large.residual[is_known] ** 2
     features = FEATURE_MARGIN * (after - before) / (growth[:, None] - 1.0)
     variance = np.maximum(before - np.maximum(features, 0.0), 0.0)
@@ -84,8 +86,8 @@ def hessian_norm(H: Array, covariance: Array) -> Array:
     This is the Frobenius norm in coordinates in which the patch has the covariance one, so that
     a patch of any size and anisotropy gives the same norm to the noise of its values.
     """
-    product = np.matmul(covariance[:, None], H)
-    square = np.einsum("nkij,nkji->nk", product, product)
+    local = product(covariance[:, None], H)
+    square = np.einsum("nkij,nkji->nk", local, local)
     return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
 

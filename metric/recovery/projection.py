@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from ..graph import pair_graph
+from ..kernels.elementary import log
 from .cells import CellGeometry
 from .fit import SMALLEST_PIVOT, Cloud, fit_patches
 from .least_squares import LAST_PIVOT
@@ -89,7 +90,7 @@ class L2Projection:
         low = 1.0 / (self.geometry.cells.shape[1] + 1)
         centre, radius = 0.5 * (1.0 + low), 0.5 * (1.0 - low)
         root = math.sqrt(low)
-        steps = math.ceil(math.log(2.0 / MASS_DIGITS) / math.log((1 + root) / (1 - root)))
+        steps = math.ceil(log(2.0 / MASS_DIGITS) / log((1 + root) / (1 - root)))
         x = np.zeros_like(right)
         residual = right / mass
         step, ratio = residual / centre, centre / radius

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..graph import VertexGraph
-from ..kernels import wide_graph
+from ..kernels.gradation import wide_graph
 from ..mesh import MeshLike
 from .boundary import Boundary, boundary_of
 from .cells import CellGeometry, cell_geometry
