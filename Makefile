@@ -1,6 +1,6 @@
 # Every target sets up what it needs first; that takes a moment only when something changed.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint types stubs check-stubs format docs wheel sanitize sanitize-threads fuzz bench clean
+.PHONY: help setup demo test lint types stubs check-stubs format docs wheel sanitize sanitize-threads fuzz same-bytes bench clean
 
 PYTHON := .venv/bin/python
 PYTEST_ARGS ?= -n auto --dist loadfile
@@ -9,7 +9,7 @@ PYTHON_PATHS := metric plugin tests $(wildcard solver_examples) docs
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
-	  awk -F'|' '{ printf "  make %-12s %s\n", $$1, $$2 }'
+	  awk -F'|' '{ printf "  make %-16s %s\n", $$1, $$2 }'
 
 setup: ## Install what is missing and build the package into .venv
 	@./bootstrap.sh
@@ -84,6 +84,9 @@ sanitize-threads: setup ## Run the tests of threads with the thread sanitizer
 
 fuzz: setup ## Run the property tests with many more and random examples
 	@$(PYTHON) -m pytest --hypothesis-profile=fuzz $(PYTEST_ARGS)
+
+same-bytes: setup ## Compare the bytes of all results between the code paths for other CPUs
+	@$(PYTHON) tests/same_bytes/compare_levels.py
 
 bench: ## Measure against other programs and print a table
 	@./bootstrap.sh bench

@@ -1,0 +1,38 @@
+"""Compute the same things as on other CPUs and compare the bytes, see `cpu_levels`.
+
+make same-bytes
+"""
+
+import json
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+from cpu_levels import Level, blas_levels, libm_levels, output_at, simd_levels
+
+RESULTS = Path(__file__).with_name("result_digests.py")
+
+
+def main():
+    """Print what each level chose and how many digests there are; 0 if there is one."""
+    plain = Level(name="as this CPU is", variables={})
+    levels = [plain, *blas_levels(), *simd_levels(), *libm_levels()]
+    found = defaultdict(lambda: defaultdict(list))
+    for level in levels:
+        made = json.loads(output_at(level, [sys.executable, str(RESULTS)]))
+        chosen = made["level"]
+        print(f"{level.name:40} BLAS {chosen['blas']}, SIMD {' '.join(chosen['simd']) or '-'}")
+        for name, digest in made["digests"].items():
+            found[name][digest].append(level.name)
+    different = {name: by for name, by in found.items() if len(by) > 1}
+    for name, by in different.items():
+        print(f"{name}:")
+        for digest, names in by.items():
+            print(f"  {digest}  {', '.join(names)}")
+    wholes = {tuple(names) for by in found.values() for names in by.values()}
+    print(f"{len(levels)} levels, {len(found)} results, {len(different)} that differ")
+    return 1 if different or len(wholes) != 1 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
