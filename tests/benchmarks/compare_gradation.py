@@ -27,7 +27,7 @@ from rich.table import Table
 from anistar import Mesh, certify, metric, remesh
 from anistar.interpolation_error import l2_error
 from anistar.metric.gradation import GrowthLaw, grade_on
-from anistar.metric.kernels import wide_graph
+from anistar.metric.kernels.gradation import wide_graph
 from anistar.metric.rootfind import rescaling
 from anistar.quality import quality
 
