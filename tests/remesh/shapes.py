@@ -1,6 +1,7 @@
 """Domains with curved boundaries, and metrics given by formulas, for the tests of the remesher."""
 
 import numpy as np
+from elementary_inputs import cos, sin, tanh
 
 from anistar.mesh import Mesh
 from anistar.metric import complexity, graded, normalised
@@ -12,7 +13,7 @@ def angles(n):
 
 
 def on_circle(t):
-    return np.stack([np.cos(t), np.sin(t)], axis=-1)
+    return np.stack([cos(t), sin(t)], axis=-1)
 
 
 def on_ellipse(t):
@@ -26,7 +27,7 @@ def on_clover(t):
 
 
 def clover_radius(t):
-    return 1 + 0.25 * np.cos(3 * t)
+    return 1 + 0.25 * cos(3 * t)
 
 
 def fan(boundary, tags=1, **more):
@@ -82,7 +83,7 @@ def sectors(angles, radii, *, gaps=(), turn=0.3):
     at = turn + np.radians(np.concatenate([[0], np.cumsum(angles)]))
     n = len(angles)
     n_rays = n if np.isclose(sum(angles), 360) else n + 1
-    rim = np.asarray(radii)[:n_rays, None] * np.stack([np.cos(at), np.sin(at)], axis=1)[:n_rays]
+    rim = np.asarray(radii)[:n_rays, None] * np.stack([cos(at), sin(at)], axis=1)[:n_rays]
     kept = np.array([k for k in range(n) if k not in gaps])
     points = np.concatenate([[[0.0, 0.0]], rim])
     cells = np.stack([np.zeros(len(kept), int), 1 + kept, 1 + (kept + 1) % n_rays], axis=1)
@@ -114,7 +115,7 @@ def scaled_to(mesh, M, wanted):
 
 def arc(points):
     """A layer of tanh along a circle around the origin."""
-    return np.tanh(20 * ((points**2).sum(axis=-1) - 0.5))
+    return tanh(20 * ((points**2).sum(axis=-1) - 0.5))
 
 
 def arc_hessian(points):
