@@ -1,5 +1,6 @@
 #include "metric/gradation.h"
 #include "arrays.h"
+#include "interrupt.h"
 
 #include <nanobind/stl/string.h>
 #include <stdexcept>
@@ -55,13 +56,6 @@ void check_graph(std::span<const std::int32_t> offsets,
                                   " points");
 }
 
-/// Lets Ctrl-C unwind the core.
-void look() {
-  nb::gil_scoped_acquire acquire;
-  if (PyErr_CheckSignals() != 0)
-    throw nb::python_error();
-}
-
 template <std::size_t d>
 nb::tuple grade_in(const double *points, const double *metric, std::size_t n,
                    std::span<const std::int32_t> offsets,
@@ -94,7 +88,7 @@ nb::tuple grade(Array2<double> points, Array3<double> metric,
   const std::span<const std::int32_t> ends(neighbours.data(), neighbours.size());
   check_graph(starts, ends, n);
   const GradationOptions options{growth_model(model), log_factor, max_distortion,
-                                 tolerance,           max_rounds, &look};
+                                 tolerance,           max_rounds, &look_for_signals};
   return d == 2 ? grade_in<2>(points.data(), metric.data(), n, starts, ends, options)
                 : grade_in<3>(points.data(), metric.data(), n, starts, ends, options);
 }
