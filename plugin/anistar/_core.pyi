@@ -103,6 +103,16 @@ def supermesh3(source_points: Annotated[NDArray[numpy.float64], dict(shape=(None
     Lay two meshes over each other: matrices (starts, columns, values) between points and between cells, moments of the pairs, loads of nodal values, and coverage.
     """
 
+class SymmetricSystem:
+    """A sparse symmetric positive semi-definite system."""
+
+    def __init__(self, starts: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], columns: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    def solve(self, rights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], starts: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], *, residual: float, max_steps: int) -> tuple:
+        """
+        Solve for the rows of `rights`, from those of `starts`; returns (solutions, stop reasons, residuals).
+        """
+
 def tet_qualities(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
     """
     Mean ratios (m, 3) of tetrahedra given by four points each: in the mean of the metrics, the same for a moving vertex, in the densest; -1 when flat.

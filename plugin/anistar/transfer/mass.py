@@ -8,20 +8,15 @@ from functools import cached_property
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
-from scipy.sparse.linalg import LinearOperator, cg
 
-from ..errors import MeshingError
 from ..mesh import Mesh
 from ..topology import Float, Int, cell_volumes
-from .columns import power_of_two
+from .symmetric_system import SymmetricSystem
 
 # Scaled by its diagonal the mass matrix has a condition number of at most d + 2 on any mesh
 # (Wathen, Realistic eigenvalue bounds for the Galerkin mass matrix, IMA J. Numer. Anal. 7
-# (1987)), so that conjugate gradients reach round-off in about forty steps.
-RESIDUAL = 1e-15
+# (1987)), so that conjugate residuals reach round-off in about forty steps.
 MAX_STEPS = 200
-# What round-off may leave of the residual when the steps end.
-ACCEPTED = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +48,11 @@ class Mass:
         )
         return csr_array(upper + upper.T + diags_array(diagonal))
 
+    @cached_property
+    def system(self) -> SymmetricSystem:
+        """The system with that matrix."""
+        return SymmetricSystem(self.matrix, MAX_STEPS)
+
     def solved(self, load: Float) -> Float:
         """Return the solution for the (n,) or (n, c) right-hand sides.
 
@@ -61,39 +61,9 @@ class Mass:
         MeshingError
             If the iteration does not converge, which takes values that are not finite.
         """
-        columns = load.reshape(len(load), -1)
-        solutions = [self._solved_column(np.ascontiguousarray(column)) for column in columns.T]
-        return np.stack(solutions, axis=1).reshape(load.shape)
-
-    def _solved_column(self, load: Float) -> Float:
-        # Scaled by the diagonal, so that small cells count as much as large ones; from the
-        # lumped solution, which is exact for constants.
-        scaled, scale = self._scaled
-        size = power_of_two(load)
-        right = scale * (load / size)
-        # Squares of volumes must stay in range whatever the unit of length.
-        unit = power_of_two(right)
-        right = right / unit
-        start = load / size / self.lumped / scale / unit
-        found, stopped = cg(scaled, right, x0=start, rtol=RESIDUAL, maxiter=MAX_STEPS)
-        if stopped:
-            residual = np.linalg.norm(scaled @ found - right)
-            if not residual <= ACCEPTED * np.linalg.norm(right):
-                raise MeshingError(
-                    f"the mass matrix was not solved in {MAX_STEPS} steps: residual {residual:.1e}"
-                )
-        return np.asarray(scale * (unit * found) * size)
-
-    @cached_property
-    def _scaled(self) -> tuple[csr_array, Float]:
-        scale = 1 / np.sqrt(self.matrix.diagonal())
-        scaling = diags_array(scale)
-        return csr_array(scaling @ self.matrix @ scaling), scale
-
-    def inverse(self) -> LinearOperator:
-        """Return the inverse as a symmetric linear operator."""
-        n = len(self.lumped)
-        return LinearOperator((n, n), matvec=self.solved, rmatvec=self.solved, dtype=np.float64)
+        # From the lumped solution, which is exact for constants.
+        lumped = load / self.lumped.reshape(-1, *[1] * (load.ndim - 1))
+        return self.system.solved(load, lumped)
 
 
 def mass(mesh: Mesh) -> Mass:

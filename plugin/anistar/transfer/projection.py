@@ -6,19 +6,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import pinvh
 from scipy.sparse import coo_array, csr_array, diags_array
-from scipy.sparse.linalg import LinearOperator, aslinearoperator, minres
+from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
 from ..mesh import Mesh
 from ..topology import Bool, Float, Int, cell_volumes
 from .intersection import Supermesh
 from .mass import Mass, mass
+from .symmetric_system import SymmetricSystem
 
-# Beyond this number of regions their system is solved by iteration: an inverse of many would take
-# longer than the projection.
-LARGEST_DENSE = 200
-SOLVED = 1e-15
+# For each region; the system of a row of thin layers takes about one.
+CORRECTION_STEPS = 20
 # Times that the integrals are corrected; the second takes the round-off of the first.
 CORRECTIONS = 2
 
@@ -65,7 +63,7 @@ class Projector:
     def __init__(self, overlap: Supermesh) -> None:
         self.overlap = overlap
         self._functionals: dict[str, tuple[csr_array, csr_array]] = {}
-        self._corrections: dict[str, tuple[csr_array, LinearOperator]] = {}
+        self._corrections: dict[str, tuple[csr_array, SymmetricSystem]] = {}
 
     @cached_property
     def mass(self) -> Mass:
@@ -119,12 +117,16 @@ class Projector:
         rest = field.load.sum(axis=0) - kept.sum(axis=0)
         return np.concatenate([kept, rest[None]])
 
-    def corrections(self, on: str) -> tuple[csr_array, LinearOperator]:
-        """Return the (n, r) vectors that correct integrals, and their amounts (r, r) for each."""
+    def corrections(self, on: str) -> tuple[csr_array, SymmetricSystem]:
+        """Return the (n, r) vectors that correct integrals, and the system of their amounts.
+
+        It is singular where regions have no points of their own and cannot all be corrected.
+        """
         if on not in self._corrections:
             after = self.functionals(on)[1]
             vectors = csr_array(diags_array(1 / self.lumped_mass(on)) @ after.T)
-            self._corrections[on] = vectors, pseudo_inverse(csr_array(after @ vectors))
+            steps = CORRECTION_STEPS * after.shape[0]
+            self._corrections[on] = vectors, SymmetricSystem(csr_array(after @ vectors), steps)
         return self._corrections[on]
 
     def lumped_mass(self, on: str) -> Float:
@@ -140,7 +142,7 @@ class Projector:
         vectors, amounts = self.corrections(field.on)
         wanted, after = self.integrals(field), self.functionals(field.on)[1]
         for _ in range(CORRECTIONS):
-            values = values + vectors @ (amounts @ (wanted - after @ values))
+            values = values + vectors @ amounts.solved(wanted - after @ values)
         return np.asarray(values)
 
     def operator(self, on: str) -> LinearOperator:
@@ -154,7 +156,7 @@ class Projector:
 
         def adjoint(values: Float) -> Float:
             flat = values.reshape(-1, 1)
-            multiplier = amounts.T @ (vectors.T @ flat)
+            multiplier = amounts.solved(vectors.T @ flat)
             rest = multiplier[count:].sum()
             through = self.solved(flat - after.T @ multiplier, on) + rest
             return np.asarray(mixed.T @ through + before.T @ (multiplier[:count] - rest)).ravel()
@@ -169,25 +171,6 @@ class Projector:
             )
         scaling = diags_array(1 / self.lumped_mass(on))
         return aslinearoperator(csr_array(scaling @ self.overlap.matrix(on)))
-
-
-def pseudo_inverse(gram: csr_array) -> LinearOperator:
-    """Return the pseudo-inverse of a sparse symmetric positive semi-definite matrix.
-
-    It is scaled, so that small regions count as much as large ones, and singular where regions
-    have no points of their own and cannot all be corrected.
-    """
-    scale = 1 / np.sqrt(gram.diagonal())
-    scaled = csr_array(diags_array(scale) @ gram @ diags_array(scale))
-    n = len(scale)
-    if n <= LARGEST_DENSE:
-        dense = scale[:, None] * pinvh(scaled.toarray()) * scale
-        return aslinearoperator(dense)
-
-    def solved(right: Float) -> Float:
-        return np.asarray(scale * minres(scaled, scale * right.ravel(), rtol=SOLVED)[0])
-
-    return LinearOperator((n, n), matvec=solved, rmatvec=solved, dtype=np.float64)
 
 
 def integrals_matrix(mesh: Mesh, groups: Int, count: int, on: str) -> csr_array:
