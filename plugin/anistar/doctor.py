@@ -134,7 +134,7 @@ def _tried(name: str, attempt: Callable[[], str]) -> Finding:
 def _small_adaptation(dim: int) -> str:
     block = _block(dim)
     options = AdaptOptions(metric=MetricOptions(target_complexity=100.0))
-    done = adapt(block, {"u": (block.points**2).sum(axis=1)}, options)
+    done = adapt(block, {"u": np.square(block.points).sum(axis=1)}, options)
     if problems := validate(done.mesh):
         raise RuntimeError(problems[0].message)
     return f"{done.mesh.n_points} points in {done.report.seconds:.3f} s"
@@ -148,7 +148,7 @@ def _block(dim: int) -> Mesh:
     points = np.array([*itertools.product((0.0, 1.0), repeat=3)])
     cells = []
     for axes in itertools.permutations(range(3)):  # Kuhn's six tetrahedra along the diagonal
-        steps = np.cumsum(np.eye(3, dtype=int)[list(axes)], axis=0) @ [4, 2, 1]
+        steps = (np.cumsum(np.eye(3, dtype=int)[list(axes)], axis=0) * [4, 2, 1]).sum(axis=1)
         corners = [0, *steps.tolist()]
         cells.append(corners if axes in _EVEN else [*corners[:2], corners[3], corners[2]])
     return Mesh(points=points, cells=np.array(cells))

@@ -28,7 +28,7 @@ Quantity = Callable[[Mesh, dict[str, Any]], float]
 # Where the complexity starts and what it is multiplied by, while a target error or a quantity of
 # interest decides.
 START = 1000.0
-GROWTH = 2.0
+GROWTH = 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,7 +99,7 @@ class LoopOptions:
             return self.complexities[iteration] if iteration < len(self.complexities) else None
         metric = self.adapt.metric
         is_set = metric.target_complexity is not None or metric.target_elements is not None
-        return (metric.complexity_for(dim) if is_set else START) * GROWTH**iteration
+        return float((metric.complexity_for(dim) if is_set else START) * GROWTH**iteration)
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,7 +301,10 @@ def _reason_to_stop(steps: list[Step], options: LoopOptions) -> str | None:
 
 def _estimated(mesh: Mesh, values: Floats) -> float:
     columns = values.reshape(len(values), -1).T
-    return math.hypot(*(interpolation_error(mesh, column) for column in columns))
+    errors = np.array([interpolation_error(mesh, column) for column in columns])
+    largest = float(errors.max())
+    # Relative to the largest, whose square may be out of range.
+    return largest * math.sqrt(float(np.square(errors / largest).sum())) if largest > 0 else largest
 
 
 def _refuse_nan(mesh: Mesh, fields: Mapping[str, Field]) -> None:

@@ -17,7 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from . import _core
-from .topology import Bool, Float, Int, Long, RowKeys, facet_normals
+from .topology import Bool, Float, Int, Long, RowKeys, facet_normals, vector_lengths
 
 # A point this close to a facet, relative to the facet's size, touches it: a hundred times the
 # round-off of the tests below, far below any gap that a double can resolve usefully.
@@ -104,7 +104,7 @@ def _winding(corners: Float) -> float:
         angles = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
         return float(angles.sum() / (2 * np.pi))
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+    la, lb, lc = (vector_lengths(x) for x in (a, b, c))
     top = np.einsum("ij,ij->i", a, np.cross(b, c))
     bottom = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (a * c).sum(1) * lb
     return float(2 * np.arctan2(top, bottom).sum() / (4 * np.pi))
@@ -125,12 +125,12 @@ def _lies_on(points: Float, facets: Int, vertices: Int) -> Bool:
     corners = points[facets]
     legs = corners[:, 1:] - corners[:, :1]
     offset = points[vertices] - corners[:, 0]
-    gram = legs @ legs.transpose(0, 2, 1)
+    gram = np.einsum("kij,klj->kil", legs, legs)
     right = np.einsum("kij,kj->ki", legs, offset)
     if legs.shape[1] == 1:
         weights = right / gram[:, 0]
     else:
-        det = gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2
+        det = gram[:, 0, 0] * gram[:, 1, 1] - np.square(gram[:, 0, 1])
         weights = (
             np.stack(
                 [
@@ -141,7 +141,7 @@ def _lies_on(points: Float, facets: Int, vertices: Int) -> Bool:
             )
             / np.maximum(det, np.finfo(float).tiny)[:, None]
         )
-    distance = np.linalg.norm(offset - np.einsum("ki,kij->kj", weights, legs), axis=1)
+    distance = vector_lengths(offset - np.einsum("ki,kij->kj", weights, legs))
     size = np.abs(legs).max(axis=(1, 2))
     inside = (weights >= -CONTACT).all(axis=1) & (weights.sum(axis=1) <= 1 + CONTACT)
     own = (facets == vertices[:, None]).any(axis=1)
@@ -181,11 +181,11 @@ def _separates(facet: Float, p: Float, q: Float) -> Bool:
     normal = facet_normals(facet.reshape(-1, facet.shape[2]), index)
     below = np.einsum("ij,ij->i", normal, p - facet[:, 0])
     above = np.einsum("ij,ij->i", normal, q - facet[:, 0])
-    reach = np.linalg.norm(normal, axis=1) * np.linalg.norm(q - p, axis=1)
+    reach = vector_lengths(normal) * vector_lengths(q - p)
     legs = facet[:, 1:] - facet[:, :1]
-    longest = np.linalg.norm(legs, axis=2).max(axis=1)
-    far = np.maximum(np.linalg.norm(p - facet[:, 0], axis=1), np.linalg.norm(q - p, axis=1))
+    longest = vector_lengths(legs).max(axis=1)
+    far = np.maximum(vector_lengths(p - facet[:, 0]), vector_lengths(q - p))
     rounding = 8 * np.finfo(float).eps * np.abs(facet).max(axis=(1, 2))
-    turn = rounding * longest ** (width - 2) * (far + longest)
+    turn = rounding * (longest if width == 3 else 1.0) * (far + longest)
     strict = np.minimum(np.abs(below), np.abs(above)) > CONTACT * reach + turn
     return np.asarray(strict & (below * above < 0))

@@ -92,11 +92,11 @@ def remesh(
     _check_frozen(options.frozen_tags, geometry)
     scale = _unit_scale(mesh.points)
     call = _call_core if mesh.dim == 2 else remesh_volume
-    metric /= scale**2  # a copy, as check_metric returns it
+    metric /= scale * scale  # a copy, as check_metric returns it
     raw = call(mesh, metric, geometry, project, options, scale)
     points, metric = raw["points"], raw["metric"]
     points /= scale
-    metric *= scale**2
+    metric *= scale * scale
     kept = geometry if mesh.dim == 2 else mesh
     ridges = {name: raw[name] for name in ("edges", "edge_tags") if name in raw}
     new = Mesh._trusted(

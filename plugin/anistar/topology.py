@@ -42,7 +42,7 @@ class RowKeys:
     def __init__(self, rows: Int, n_points: int) -> None:
         self._n = max(n_points, 1)
         self._pairs: Long | None = None
-        if rows.shape[1] == 3 and self._n**3 >= 2**63:
+        if rows.shape[1] == 3 and self._n * self._n * self._n >= 2**63:
             self._pairs = np.unique(_horner(np.sort(rows, axis=1)[:, :2], self._n))
 
     def encode(self, rows: Int) -> Long:
@@ -209,14 +209,19 @@ def facet_normals(points: Float, facets: Int) -> Float:
     return np.asarray(0.5 * np.cross(first, points[facets[:, 2]] - points[facets[:, 0]]))
 
 
+def vector_lengths(vectors: Float) -> Float:
+    """Return the (...) lengths of (..., d) vectors."""
+    return np.asarray(np.sqrt((vectors * vectors).sum(axis=-1)))
+
+
 def facet_measures(points: Float, facets: Int) -> Float:
     """Return the (k,) lengths (2D) or areas (3D) of the facets."""
-    return np.asarray(np.linalg.norm(facet_normals(points, facets), axis=1))
+    return vector_lengths(facet_normals(points, facets))
 
 
 def edge_lengths(points: Float, edges: Int) -> Float:
     """Return the (e,) lengths of the edges."""
-    return np.asarray(np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1))
+    return vector_lengths(points[edges[:, 1]] - points[edges[:, 0]])
 
 
 def measure_by_tag(measures: Float, tags: Int) -> dict[int, float]:

@@ -14,6 +14,7 @@ from .topology import (
     facet_measures,
     facet_table,
     measure_by_tag,
+    vector_lengths,
 )
 from .violations import (
     Violation,
@@ -152,6 +153,6 @@ def _corner_violations(mesh: Mesh, reference: Mesh, tolerance: float) -> Iterato
     distance = np.full(len(wanted), np.inf)
     for i, corner in enumerate(wanted):
         if len(have):
-            distance[i] = np.linalg.norm(have - corner, axis=1).min()
+            distance[i] = vector_lengths(have - corner).min()
     lost = ~(distance <= tolerance * size)
     yield from violations_at("corner", lost, "corner {i} of the reference is not kept")

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..mesh import Mesh
-from ..topology import RowKeys
+from ..topology import RowKeys, cell_determinants
 
 try:
     from skfem import MeshTet, MeshTri
@@ -65,8 +65,7 @@ def from_skfem(other: Any) -> Mesh:
         raise TypeError(f"only MeshTri and MeshTet are supported, not {type(other).__name__}")
     points, cells = np.asarray(other.p.T), np.array(other.t.T)
     dim = points.shape[1]
-    legs = points[cells[:, 1:]] - points[cells[:, :1]]
-    inverted = np.linalg.det(legs) < 0
+    inverted = cell_determinants(points, cells) < 0
     cells[inverted, -2:] = cells[inverted, :-3:-1]
     chosen, facet_tags, names = _tagged(other.boundaries, other.facets.shape[1], dim - 1)
     _, cell_tags, regions = _tagged(other.subdomains, len(cells), dim)

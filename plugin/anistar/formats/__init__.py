@@ -168,7 +168,7 @@ def read_metric(path: PathLike, mesh: Mesh) -> Float:
         if bad.any():
             at = int(np.argmax(bad))
             raise FormatError(f"{path}: the size at point {at} is {values[at]:.3g}, not positive")
-        return np.asarray(np.eye(mesh.dim) / values[:, None, None] ** 2)
+        return np.asarray(np.eye(mesh.dim) / np.square(values[:, None, None]))
     if values.shape[1:] != (mesh.dim, mesh.dim):
         raise FormatError(f"{path}: {name!r} is not a {mesh.dim} x {mesh.dim} tensor field")
     return np.asarray(values, dtype=np.float64)

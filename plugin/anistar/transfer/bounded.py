@@ -10,6 +10,7 @@ from scipy.sparse import csr_array
 from ..mesh import Mesh
 from ..topology import Float, Int
 from .intersection import Supermesh
+from .measure import weighted_sums
 from .projection import Loaded, Projector
 
 # Rounds in which what the limiter cut from the fluxes is offered again.
@@ -186,9 +187,9 @@ def _total_refilled(projector: Projector, field: Loaded, values: Float, bounds: 
     moments = projector.lumped_mass(field.on)
     if projector.functionals(field.on)[1].shape[0] == 1:
         return values
-    defect = projector.integrals(field).sum(axis=0) - moments @ values
+    defect = projector.integrals(field).sum(axis=0) - weighted_sums(moments, values)
     up, down = bounds.high - values, bounds.low - values
-    rise, fall = (_part_of_room(defect, moments @ room) for room in (up, down))
+    rise, fall = (_part_of_room(defect, weighted_sums(moments, room)) for room in (up, down))
     return bounds.clipped(values + rise * up + fall * down)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..fields import Field
 from ..metric import exp_metric, log_metric
+from ..metric.algebra import eigenvalues
 from ..topology import Float
 
 
@@ -53,7 +54,8 @@ def from_columns(columns: Float, like: Field, *, logarithmic: bool) -> Field:
 
 
 def _require_positive(values: Float) -> None:
-    smallest = np.linalg.eigvalsh(values).min(axis=-1)
+    dim = values.shape[-1]
+    smallest = eigenvalues(values.reshape(-1, dim, dim)).min(axis=1).reshape(values.shape[:-2])
     if not (smallest > 0).all():
         at = np.unravel_index(int(np.argmin(smallest)), smallest.shape)
         index = ", ".join(str(int(k)) for k in at)

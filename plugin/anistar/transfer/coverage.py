@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..topology import cell_volumes
+from ..topology import cell_volumes, vector_lengths
 from .intersection import Supermesh
 from .options import TransferOptions
 
@@ -20,7 +20,7 @@ def require_covered(overlap: Supermesh, options: TransferOptions) -> None:
         Names the target cell with the largest uncovered part.
     """
     source, target = overlap.source, overlap.target
-    allowed = options.tolerance * float(np.linalg.norm(np.ptp(source.points, axis=0)))
+    allowed = options.tolerance * float(vector_lengths(np.ptp(source.points, axis=0)))
     gaps = (overlap.uncovered > 0) & (overlap.distance > allowed)
     if options.outside != "raise" or not gaps.any():
         return

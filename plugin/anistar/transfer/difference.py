@@ -9,6 +9,7 @@ from ..mesh import Mesh
 from ..topology import Float, cell_volumes
 from .columns import as_columns
 from .intersection import Supermesh
+from .measure import weighted_sums
 from .projection import Loaded, integrals_matrix
 
 
@@ -37,9 +38,9 @@ def _squares(mesh: Mesh, columns: Float, on: str, covered: Float | None) -> Floa
     """Return the integrals of the squares, each cell scaled to its covered volume."""
     volumes = cell_volumes(mesh.points, mesh.cells) if covered is None else covered
     if on == "cells":
-        return np.asarray(volumes @ columns**2)
+        return weighted_sums(volumes, np.square(columns))
     width = mesh.dim + 1
     nodal = columns[mesh.cells] if on == "points" else columns.reshape(mesh.n_cells, width, -1)
     # The mean of b_i b_j over a simplex is (1 + delta_ij) / ((d + 1) (d + 2)).
-    means = ((nodal**2).sum(axis=1) + nodal.sum(axis=1) ** 2) / (width * (width + 1))
-    return np.asarray(volumes @ means)
+    means = (np.square(nodal).sum(axis=1) + np.square(nodal.sum(axis=1))) / (width * (width + 1))
+    return weighted_sums(volumes, means)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..mesh import Mesh
-from ..topology import Bool, Float, Int, cell_determinants
+from ..topology import Bool, Float, Int, cell_determinants, vector_lengths
 from .nodes import node_coordinates
 from .options import TransferOptions
 from .regions import Regions
@@ -167,7 +167,7 @@ def _places(
     options: TransferOptions,
     per_cell: int = 1,
 ) -> Places:
-    allowed = options.tolerance * float(np.linalg.norm(np.ptp(source.points, axis=0)))
+    allowed = options.tolerance * float(vector_lengths(np.ptp(source.points, axis=0)))
     outside = distance > allowed
     if options.outside == "raise" and outside.any():
         worst = int(np.argmax(distance))

@@ -23,6 +23,11 @@ def cell_integrals(mesh: Mesh, field: Field) -> Float:
     return np.asarray(volumes.reshape(-1, *[1] * (means.ndim - 1)) * means)
 
 
+def weighted_sums(weights: Float, columns: Float) -> Float:
+    """Return the (c,) sums of (n, c) columns times (n,) weights, as accurate as one column's."""
+    return np.asarray(np.multiply(columns.T, weights, order="C").sum(axis=1))
+
+
 def integral(mesh: Mesh, field: Field) -> Float:
     """Return the integral of a field over the mesh, one value for each component.
 

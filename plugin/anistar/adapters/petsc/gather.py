@@ -55,4 +55,4 @@ def _vertex_section(plex: Any) -> Any:
     dim = plex.getDimension()
     layout = plex.clone()
     layout.setNumFields(1)
-    return layout.createSection([dim**2], [dim**2] + [0] * dim)
+    return layout.createSection([dim * dim], [dim * dim] + [0] * dim)

@@ -77,7 +77,7 @@ def strata(plex: Any) -> Strata:
     sizes = np.arange(dim + 1) + 1
     sizes[0] = 0
     counts = ranges[:, 1] - ranges[:, 0]
-    all_cones = cones(plex, int(counts @ sizes))
+    all_cones = cones(plex, int((counts * sizes).sum()))
     rows = [np.arange(counts[0], dtype=np.int64)[:, None]]
     begin = _cone_offsets(ranges, sizes)
     for k in range(1, dim + 1):
