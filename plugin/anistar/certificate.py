@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .mesh import Mesh
 from .metric import check_metric
+from .metric.algebra import solved
 from .report import as_builtin, attributes
 
 Float = NDArray[np.float64]
@@ -261,9 +262,10 @@ def _explained(mesh: Mesh, metric: Float, cell: int) -> SimplexOfStar:
 def circumcentre(simplex: Float, metric: Float) -> Float:
     """Return the (d,) centre of the circumscribed ellipsoid of a (d + 1, d) simplex in a metric."""
     legs = simplex[1:] - simplex[0]
-    squares = np.einsum("ki,ij,kj->k", legs, metric, legs)
-    return np.asarray(simplex[0] + np.linalg.solve(2 * legs @ metric, squares))
+    gram = np.einsum("ki,ij,lj->kl", legs, metric, legs)
+    weights = solved(gram[None], np.diagonal(gram)[None] / 2)[0]
+    return np.asarray(simplex[0] + np.einsum("k,ki->i", weights, legs))
 
 
 def _length(vector: Float, metric: Float) -> float:
-    return math.sqrt(vector @ metric @ vector)
+    return math.sqrt(np.einsum("i,ij,j->", vector, metric, vector))

@@ -17,6 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from . import _core
+from .metric.kernels.elementary import angle_of
 from .topology import Bool, Float, Int, Long, RowKeys, facet_normals, vector_lengths
 
 # A point this close to a facet, relative to the facet's size, touches it: a hundred times the
@@ -101,13 +102,13 @@ def _winding(corners: Float) -> float:
     """Return the winding number around the origin of facets given as (k, d, d) corners."""
     if corners.shape[2] == 2:
         a, b = corners[:, 0], corners[:, 1]
-        angles = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
+        angles = angle_of(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
         return float(angles.sum() / (2 * np.pi))
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     la, lb, lc = (vector_lengths(x) for x in (a, b, c))
     top = np.einsum("ij,ij->i", a, np.cross(b, c))
     bottom = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (a * c).sum(1) * lb
-    return float(2 * np.arctan2(top, bottom).sum() / (4 * np.pi))
+    return float(2 * angle_of(top, bottom).sum() / (4 * np.pi))
 
 
 def _close_pairs(points: Float, facets: Int) -> Iterator[tuple[Long, Long]]:

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .mesh import Mesh
+from .metric.algebra import determinant
+from .metric.kernels.elementary import log, power
 from .report import attributes
 from .topology import cell_volumes, unique_edges
 
@@ -101,7 +103,7 @@ def metric_lengths(mesh: Mesh, M: Floats, edges: NDArray[np.int32]) -> Floats:
     )
     close = np.abs(a - b) <= _NEARLY_EQUAL * (a + b)
     ratio = np.where(close, math.e, a / b)
-    return np.asarray(np.where(close, (a + b) / 2, (a - b) / np.log(ratio)))
+    return np.asarray(np.where(close, (a + b) / 2, (a - b) / log(ratio)))
 
 
 def mean_ratios(mesh: Mesh, M: Floats) -> Floats:
@@ -110,13 +112,15 @@ def mean_ratios(mesh: Mesh, M: Floats) -> Floats:
     ``Q = (V_M / V_unit)^(2/d) / mean(l^2)``, with the metric of the corner whose determinant is
     the largest.
     """
-    largest = np.argmax(np.linalg.det(M)[mesh.cells], axis=1)
-    metric = M[mesh.cells[np.arange(mesh.n_cells), largest]]
+    determinants = determinant(M)
+    largest = np.argmax(determinants[mesh.cells], axis=1)
+    densest = mesh.cells[np.arange(mesh.n_cells), largest]
+    metric = M[densest]
     volumes = cell_volumes(mesh.points, mesh.cells)
     squares = np.zeros(mesh.n_cells)
     pairs = list(itertools.combinations(range(mesh.dim + 1), 2))
     for i, j in pairs:
         vectors = mesh.points[mesh.cells[:, j]] - mesh.points[mesh.cells[:, i]]
         squares += np.einsum("ci,cij,cj->c", vectors, metric, vectors)
-    size = np.abs(volumes) * np.sqrt(np.linalg.det(metric)) / _EQUILATERAL[mesh.dim]
-    return np.asarray(np.sign(volumes) * size ** (2 / mesh.dim) * len(pairs) / squares)
+    size = np.abs(volumes) * np.sqrt(determinants[densest]) / _EQUILATERAL[mesh.dim]
+    return np.asarray(np.sign(volumes) * power(size, 2 / mesh.dim) * len(pairs) / squares)

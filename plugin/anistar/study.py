@@ -15,6 +15,7 @@ from .fields import as_fields
 from .interpolation_error import ExactFunction, l2_error
 from .loop import LoopOptions, Solve, Step, adapt_loop
 from .mesh import Mesh
+from .metric.kernels.elementary import log, power
 from .remesh import remesh
 from .report import as_builtin, attributes, write_json, write_text
 from .topology import cell_volumes
@@ -210,15 +211,16 @@ def observed_order(points: Sequence[int], errors: Sequence[float], dim: int) -> 
     """
     if len(set(points)) < 2 or min(errors) <= 0:
         return math.nan
-    sizes = np.log(np.asarray(points, dtype=np.float64)) / dim
-    slope = np.polyfit(sizes, -np.log(np.asarray(errors, dtype=np.float64)), 1)[0]
-    return float(slope)
+    sizes = log(np.asarray(points, dtype=np.float64)) / dim
+    digits = -log(np.asarray(errors, dtype=np.float64))
+    offsets = sizes - sizes.mean()
+    return float((offsets * (digits - digits.mean())).sum() / np.square(offsets).sum())
 
 
 def _uniform(mesh: Mesh, geometry: Mesh, complexity: float) -> Mesh:
     """Return a mesh of one size everywhere."""
     volume = cell_volumes(mesh.points, mesh.cells).sum()
-    size = np.eye(mesh.dim) * (complexity / volume) ** (2 / mesh.dim)
+    size = np.eye(mesh.dim) * power(complexity / volume, 2 / mesh.dim)
     return remesh(mesh, np.tile(size, (mesh.n_points, 1, 1)), geometry=geometry).mesh
 
 
