@@ -151,14 +151,14 @@ def _two_rings(nodes: Places, n_nodes: int) -> tuple[Places, Places]:
 def _quadrics(local: Array, centre: Places, n_nodes: int) -> tuple[Array, Array]:
     """Gradients (n, 2) and second derivatives (n, 2, 2) of the fits at the nodes."""
     x, y, z = local.T
-    square = x**2 + y**2 + z**2
+    square = x * x + y * y + z * z
     mean = np.bincount(centre, square, minlength=n_nodes) / np.maximum(
         np.bincount(centre, minlength=n_nodes), 1
     )
     h = np.sqrt(np.where(mean > 0.0, mean, 1.0))[centre]
     x, y, z = x / h, y / h, z / h
-    weight = h**2 / square
-    rows = np.stack([x, y, 0.5 * x**2, x * y, 0.5 * y**2], axis=1)
+    weight = np.square(h) / square
+    rows = np.stack([x, y, 0.5 * x * x, x * y, 0.5 * y * y], axis=1)
     normal = np.zeros((n_nodes, 5, 5))
     right = np.zeros((n_nodes, 5))
     for i in range(5):
@@ -189,7 +189,7 @@ def _principal(vertex: Places, frames: Array, gradient: Array, second: Array) ->
     first = product(tangents.transpose(0, 2, 1), tangents)
     values, vectors = eigh(first)
     root = product(vectors / np.sqrt(values)[:, None, :], vectors.transpose(0, 2, 1))
-    slope = np.sqrt(1.0 + (gradient**2).sum(axis=1))[:, None, None]
+    slope = np.sqrt(1.0 + np.square(gradient).sum(axis=1))[:, None, None]
     curvatures, axes = eigh(product(product(root, second), root) / slope)
     return BoundaryShape(
         points=vertex,

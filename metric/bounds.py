@@ -84,11 +84,11 @@ def clipped(M: Array, h_min: Array | None, h_max: Array | None, a_max: Array | N
         return M
     values, vectors = eigh(M)
     if h_max is not None:
-        values = np.maximum(values, 1.0 / h_max**2)
+        values = np.maximum(values, 1.0 / np.square(h_max))
     if h_min is not None:
-        values = np.minimum(values, 1.0 / h_min**2)
+        values = np.minimum(values, 1.0 / np.square(h_min))
     if a_max is not None:
-        values = np.maximum(values, values[:, -1:] / a_max**2)
+        values = np.maximum(values, values[:, -1:] / np.square(a_max))
     return compose(values, vectors)
 
 

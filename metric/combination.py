@@ -148,7 +148,7 @@ def limited_step(current: Array, target: Array, ratio: float = 2.0) -> Array:
     result = check_metric(target, n_points=n, dim=d, name="target metric")
     L = lower_factor(start)
     values, vectors = eigh(congruent(L, result))
-    held = np.clip(values, 1.0 / ratio**2, ratio**2)
+    held = np.clip(values, 1.0 / np.square(ratio), np.square(ratio))
     far = np.flatnonzero((held != values).any(axis=1))
     result[far] = compose(held[far], product(L[far], vectors[far]))
     return check_result(result, "the limited step")

@@ -106,7 +106,7 @@ def _size_rule(
         if not 0.0 < hausdorff_number <= 0.5:
             raise ValueError(f"hausdorff_number must be in (0, 1/2], got {hausdorff_number}")
         # sagitta s and half chord c of a circle: c^2 = s (2 R - s), with s = 2 e c
-        of_radius = 8.0 * hausdorff_number / (1.0 + 4.0 * hausdorff_number**2)
+        of_radius = 8.0 * hausdorff_number / (1.0 + 4.0 * hausdorff_number * hausdorff_number)
         return lambda curvature: of_radius * _radius(curvature)
     assert chord_error is not None  # one of the three is given
     error = chord_error
@@ -143,9 +143,9 @@ def _intersect_along(M: Array, shape: BoundaryShape, h: Array, h_normal: float) 
     """Intersect `M` in place with the metrics of the shapes; a point may have several."""
     d = M.shape[-1]
     across = shape.directions.transpose(0, 2, 1)
-    along = product(shape.directions / h[:, None, :] ** 2, across)
+    along = product(shape.directions / np.square(h[:, None, :]), across)
     projection = product(shape.directions, across)
-    metrics = along + (np.eye(d) - projection) / h_normal**2
+    metrics = along + (np.eye(d) - projection) / np.square(h_normal)
     metrics = 0.5 * (metrics + metrics.transpose(0, 2, 1))
     order = np.argsort(shape.points, kind="stable")
     while order.size:

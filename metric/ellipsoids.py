@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import reduce
 from itertools import combinations, combinations_with_replacement
@@ -163,5 +164,5 @@ def _symmetric_basis(d: int) -> Array:
     pairs = list(combinations_with_replacement(range(d), 2))
     basis = np.zeros((len(pairs), d, d))
     for a, (i, j) in enumerate(pairs):
-        basis[a, i, j] = basis[a, j, i] = 1.0 if i == j else 0.5**0.5
+        basis[a, i, j] = basis[a, j, i] = 1.0 if i == j else math.sqrt(0.5)
     return basis

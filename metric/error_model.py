@@ -83,7 +83,7 @@ def local_error(M: Array, H: Array) -> Array:
     trace = np.trace(S, axis1=1, axis2=2)
     square = np.einsum("nij,nij->n", S, S)
     of_trace, of_square = MEAN_SQUARE[d]
-    return np.asarray(MESHER_FACTOR[d] * np.sqrt(of_trace * trace**2 + of_square * square))
+    return np.asarray(MESHER_FACTOR[d] * np.sqrt(of_trace * np.square(trace) + of_square * square))
 
 
 @lru_cache(maxsize=16)

@@ -88,7 +88,7 @@ def _with_anisotropy(mesh: MeshLike, H: Array, options: MetricOptions) -> Array:
     assert ratio is not None  # it was given
     values, vectors = eigh(H.reshape(-1, d, d))
     largest = np.abs(values).max(axis=1, keepdims=True)
-    floor = largest / np.repeat(np.broadcast_to(ratio, (n, 1)), k, axis=0) ** 2
+    floor = largest / np.square(np.repeat(np.broadcast_to(ratio, (n, 1)), k, axis=0))
     lifted = np.copysign(np.maximum(np.abs(values), floor), values)
     return compose(lifted, vectors).reshape(H.shape)
 

@@ -85,7 +85,7 @@ def _opposite_pairs(cells: Index, n_points: int) -> Index:
     facets = np.concatenate([np.delete(cells, i, axis=1) for i in corners])
     apex = np.concatenate([cells[:, i] for i in corners])
     facets.sort(axis=1)
-    if float(n_points) ** facets.shape[1] < 2.0**63:
+    if int(n_points) ** facets.shape[1] < 2**63:
         key = facets[:, 0].astype(np.int64)
         for column in facets.T[1:]:
             key = key * n_points + column

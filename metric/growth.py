@@ -105,11 +105,11 @@ def grown(
 ) -> Array:
     """Eigenvalues (k, d) of what metrics of the given spectra ask at the ends of edges `v`."""
     along = np.einsum("kij,ki->kj", vectors, v)
-    length = np.sqrt((values * along**2).sum(axis=1))[:, None]
+    length = np.sqrt((values * np.square(along)).sum(axis=1))[:, None]
     growth = np.asarray(_model_growth(values, v, length, model, log_factor))
     if np.isfinite(max_distortion):
         growth = np.minimum(growth, 1.0 + length * max_distortion)
-    return np.asarray(values / growth**2)
+    return np.asarray(values / np.square(growth))
 
 
 def _model_growth(

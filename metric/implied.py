@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,8 +14,10 @@ from .mesh import MeshLike
 Array = NDArray[np.float64]
 
 UNIT_SIMPLEX = {
-    2: np.array([[1.0, 0.0], [0.5, 0.75**0.5]]),
-    3: np.array([[1.0, 0.0, 0.0], [0.5, 0.75**0.5, 0.0], [0.5, 12**-0.5, (2 / 3) ** 0.5]]),
+    2: np.array([[1.0, 0.0], [0.5, math.sqrt(0.75)]]),
+    3: np.array(
+        [[1.0, 0.0, 0.0], [0.5, math.sqrt(0.75), 0.0], [0.5, 1.0 / math.sqrt(12), math.sqrt(2 / 3)]]
+    ),
 }
 """Edges from one vertex of the regular simplex of edge length one, in rows."""
 

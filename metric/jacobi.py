@@ -59,8 +59,8 @@ def _rotate(A: Array, V: Array, p: int, q: int) -> bool:
         return False
     a, b, c = a[active], b[active], c[active]
     cotangent = (c - a) / (2.0 * b)
-    t = np.copysign(1.0, cotangent) / (np.abs(cotangent) + np.sqrt(1.0 + cotangent**2))
-    cosine = 1.0 / np.sqrt(1.0 + t**2)
+    t = np.copysign(1.0, cotangent) / (np.abs(cotangent) + np.sqrt(1.0 + np.square(cotangent)))
+    cosine = 1.0 / np.sqrt(1.0 + t * t)
     sine = t * cosine
     for r in range(A.shape[1]):
         if r not in (p, q):

@@ -276,7 +276,7 @@ def _floored(fields: Sequence[HessianField], C: float, p: float) -> list[Array]:
             density = exp(inner * log(np.maximum(values, floor)).sum(axis=1))
             integral += power(field.steps, 2.0 * inner) * float((field.mass * density).sum())
         for i, field in enumerate(fields):
-            featureless = power(C / integral, -2.0 / d) / field.size**2
+            featureless = power(C / integral, -2.0 / d) / np.square(field.size)
             floor = power(featureless * power(field.steps, 2.0 * outer), 1.0 / (2.0 * inner))
             floors[i] = np.clip(floor, SMALLEST_FLOOR, 1.0)
     return [

@@ -41,5 +41,5 @@ def from_sizes(h: ArrayLike, dim: int = 2) -> NDArray[np.float64]:
     M = np.zeros((*sizes.shape, sizes.shape[1]))
     axis = np.arange(sizes.shape[1])
     with np.errstate(over="ignore", divide="ignore"):
-        M[:, axis, axis] = 1.0 / sizes**2
+        M[:, axis, axis] = 1.0 / np.square(sizes)
     return check_result(M, "the squares of the sizes")

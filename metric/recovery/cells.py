@@ -117,7 +117,7 @@ def _slopes(corners: Array) -> tuple[Array, Array]:
 def boundary_facets(cells: Index, n_points: int) -> Index:
     """Facets (f, d) that belong to one cell only, their points increasing."""
     dim, faces = cells.shape[1] - 1, _faces(_sorted_corners(cells))
-    if float(n_points) ** dim >= 2.0**63:
+    if int(n_points) ** dim >= 2**63:
         table = np.concatenate([np.stack(face, axis=1) for face in faces])
         order = np.lexsort(table.T[::-1])
         return _lonely(table[order]).astype(np.int32)

@@ -105,11 +105,11 @@ def gain(
         unit = np.zeros((len(basis), 1, len(starts)))
         unit[c] = factor.scale[c]
         inverse = _substituted(factor.lower, unit)[c, 0] * factor.scale[c]
-        phi = weight * basis[c] ** 2
+        phi = weight * np.square(basis[c])
         total = np.add.reduceat(phi, starts)
         # a function that is zero at all samples has no weight; the pivot of its patch is zero
         mean = np.add.reduceat(weight * phi, starts) / np.where(total > 0.0, total, 1.0)
-        variance = inverse * mean + response[c] ** 2
+        variance = inverse * mean + np.square(response[c])
         square += variance * (1.0 if i == j else 2.0)
     return np.asarray(np.sqrt(square))
 
@@ -120,7 +120,7 @@ def residual(equations: Equations, coefficients: Array, values: Array) -> Array:
     for phi, c in zip(equations.basis, coefficients, strict=True):
         left -= phi * np.repeat(c, counts, axis=1)
     freedom = counts - len(equations.basis)
-    square = np.add.reduceat(left**2, equations.starts, axis=1)
+    square = np.add.reduceat(np.square(left), equations.starts, axis=1)
     enough = freedom >= LEAST_FREEDOM
     variance = square / np.where(enough, freedom, 1)
     return np.asarray(np.where(enough, np.sqrt(variance), np.nan).T)

@@ -71,7 +71,7 @@ def estimated_noise(points: Array, cloud: Cloud, neighbours: sparse.csr_array, l
         return noise
     sizes = [np.sqrt(determinant(fits.covariance[is_known])) for fits in (small, large)]
     growth = power(np.maximum(sizes[1] / sizes[0], 1.5), 6.0 / points.shape[1])
-    before, after = small.residual[is_known] ** 2, large.residual[is_known] ** 2
+    before, after = np.square(small.residual[is_known]), np.square(large.residual[is_known])
     features = FEATURE_MARGIN * (after - before) / (growth[:, None] - 1.0)
     variance = np.maximum(before - np.maximum(features, 0.0), 0.0)
     for k in range(len(noise)):
@@ -97,8 +97,7 @@ def damped(H: Array, covariance: Array, threshold: Array) -> Array:
     They are multiplied by ``max(0, 1 - (threshold / norm)^2)``, which is zero below the
     threshold (n, k) and one far above it.
     """
-    square = hessian_norm(H, covariance) ** 2
-    kept = 1.0 - np.divide(
-        threshold**2, square, out=np.ones_like(square), where=square > threshold**2
-    )
+    square = np.square(hessian_norm(H, covariance))
+    bound = np.square(threshold)
+    kept = 1.0 - np.divide(bound, square, out=np.ones_like(square), where=square > bound)
     return np.asarray(H * kept[:, :, None, None])
