@@ -9,7 +9,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import check_metric
+from .checks import check_metric, check_result
 from .graph import VertexGraph
 from .growth import Growth
 from .kernels.elementary import log
@@ -110,7 +110,7 @@ def graded(
     Raises
     ------
     MetricError
-        If `M` is no metric on the points of `mesh`.
+        If `M` is no metric on the points of `mesh`, or the result is none.
     ValueError
         If `factor`, `model`, `max_distortion` or `tolerance` is out of range.
 
@@ -134,7 +134,8 @@ def graded(
     check_tolerance(tolerance)
     if law.is_off:
         return M
-    return grade_on(wide_graph(mesh), mesh.points, M, law, tolerance).metric
+    growth = grade_on(wide_graph(mesh), mesh.points, M, law, tolerance)
+    return check_result(growth.metric, "the gradation")
 
 
 def check_tolerance(tolerance: float) -> None:

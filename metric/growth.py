@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import compose, determinant, eigh, norms
+from .algebra import compose, determinant, eigh, lower_factor, norms
 from .graph import VertexGraph
 from .kernels.elementary import log
 from .simultaneous_reduction import intersection
@@ -87,11 +87,27 @@ def grade(
         asked = law(values[at], vectors[at], points[q] - points[front[at]])
         requests = compose(asked, vectors[at])
         for turn in _turns(q):
-            M[q[turn]], changed = intersection(M[q[turn]], requests[turn], tolerance)
-            raised = q[turn][changed]
+            raised = _raise(M, q[turn], requests[turn], tolerance)
             bucket[raised] = _buckets(M[raised], densest)
-            updates += int(changed.sum())
+            updates += len(raised)
     return Growth(metric=M, rounds=rounds, updates=updates, converged=True)
+
+
+def _raise(M: Array, q: NDArray[np.int32], requests: Array, tolerance: float) -> NDArray[np.int32]:
+    """Raise the metrics of some vertices in place; return those that grew denser.
+
+    Round-off eats what is added far below the largest eigenvalue: the same would be asked again
+    and again. What grows each time comes to an end.
+    """
+    before = M[q]
+    with np.errstate(all="ignore"):
+        raised, changed = intersection(before, requests, tolerance)
+        pivots = [np.diagonal(lower_factor(T[changed]), axis1=1, axis2=2) for T in (raised, before)]
+        growth = (pivots[0] / pivots[1]).prod(axis=1)
+    # half of what the square root of the determinant must grow by
+    denser = np.flatnonzero(changed)[growth > 1.0 + 0.25 * tolerance]
+    M[q[denser]] = raised[denser]
+    return q[denser]
 
 
 def grown(
@@ -104,6 +120,7 @@ def grown(
     max_distortion: float = np.inf,
 ) -> Array:
     """Eigenvalues (k, d) of what metrics of the given spectra ask at the ends of edges `v`."""
+    values = np.maximum(values, 0.0)  # round-off may make the smallest negative
     along = np.einsum("kij,ki->kj", vectors, v)
     length = np.sqrt((values * np.square(along)).sum(axis=1))[:, None]
     growth = np.asarray(_model_growth(values, v, length, model, log_factor))

@@ -56,6 +56,19 @@ bool is_clearly_below(const SymmetricTensor<d> &N, const SymmetricTensor<d> &M) 
     return determinant(D) > error * size;
 }
 
+/// Whether the density of a raised metric grew, by the pivots of its factor. Round-off
+/// eats what is added far below the largest eigenvalue: the same would be asked again
+/// and again. What grows each time comes to an end.
+template <std::size_t d>
+bool is_denser(const SymmetricTensor<d> &raised, const SymmetricTensor<d> &before,
+               double tolerance) {
+  const Matrix<d> after = lower_factor(raised), L = lower_factor(before);
+  double growth = 1;
+  for (int i = 0; i < static_cast<int>(d); ++i)
+    growth *= after(i, i) / L(i, i);
+  return growth > 1 + .25 * tolerance; // half of what the square root must grow by
+}
+
 template <std::size_t d> class Gradation {
 public:
   Gradation(std::span<const Vector<d>> points, std::vector<SymmetricTensor<d>> metric,
@@ -147,8 +160,13 @@ private:
       const auto q = static_cast<std::size_t>(neighbours_[k]);
       const SymmetricTensor<d> request = grown(asking, points_[q] - points_[p]);
       SymmetricTensor<d> &M = result_.metric[q];
-      if (is_clearly_below(request, M) || !raise(M, request, options_.tolerance))
+      if (is_clearly_below(request, M))
         continue;
+      SymmetricTensor<d> raised = M;
+      if (!raise(raised, request, options_.tolerance) ||
+          !is_denser(raised, M, options_.tolerance))
+        continue;
+      M = raised;
       enqueue(q);
       ++result_.updates;
     }
@@ -168,6 +186,7 @@ private:
     const double length = v.norm();
     Vector<d> values = at.spectrum.values;
     for (double &value : values) {
+      value = std::max(value, 0.0); // round-off may make the smallest negative
       double growth = 1 + std::sqrt(value) * length * options_.log_factor;
       if (options_.model == GrowthModel::Mixed)
         growth = metric_growth * eighth_root(growth / metric_growth);
