@@ -152,12 +152,6 @@ def test_the_inside_is_refined_beside_frozen_edges():
     assert done.mesh.n_points > 350
 
 
-def test_a_budget_that_the_curves_exceed_is_refused_with_the_place():
-    mesh = square(4)
-    with pytest.raises(anistar.MeshingError, match=r"edges on the curve with tag .* near \("):
-        anistar.remesh(mesh, sizes(mesh, 1e-3), RemeshOptions(max_vertices=100))
-
-
 def test_a_projection_never_makes_a_thin_ring_cross_itself():
     # chords that had retreated to the polyline were still projected, and crossed again
     thickness, n = 0.005347, 8

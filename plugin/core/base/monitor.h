@@ -38,6 +38,9 @@ private:
   Vector<2> place_;
 };
 
+/// Thrown by Monitor::insist, where what a phase has made so far is of no use.
+struct BudgetSpent {};
+
 /// Asked now and then by every long loop.
 class Monitor {
 public:
@@ -57,14 +60,29 @@ public:
   [[nodiscard]] bool keep_going(std::size_t n_vertices, double fraction) {
     if (n_vertices >= max_vertices_)
       reason_ = StopReason::max_vertices;
-    return ++calls_ % 4096 == 0 ? look(fraction) : reason_ == StopReason::finished;
+    if (++calls_ % calls_between_glances == 0 && elapsed() > next_look_)
+      return look(fraction);
+    return reason_ == StopReason::finished;
+  }
+  /// For a loop that cannot end halfway.
+  /// @throws BudgetSpent when it must; that there is no room for so many vertices ends
+  /// this loop only, a coarser mesh may have it.
+  void insist(std::size_t n_vertices) {
+    if (!has_room(n_vertices) || !keep_going(0, 0))
+      throw BudgetSpent{};
   }
   /// The same, looking at the clock and at the user every time: for what takes a while.
   [[nodiscard]] bool look(double fraction) {
     tell(fraction);
+    note_time();
+    next_look_ = elapsed() + seconds_between_looks;
+    return reason_ == StopReason::finished;
+  }
+  /// Looks at the clock alone: after what may take long each time, as the user's own
+  /// functions do.
+  void note_time() {
     if (reason_ == StopReason::finished && elapsed() > max_seconds_)
       reason_ = StopReason::max_seconds;
-    return reason_ == StopReason::finished;
   }
   [[nodiscard]] StopReason reason() const { return reason_; }
   [[nodiscard]] bool has_room(std::size_t n_vertices) const {
@@ -75,12 +93,18 @@ public:
   }
 
 private:
+  /// A glance at the clock costs as much as a cheap iteration; some iterations are a
+  /// million times as expensive, so that their number says little about the time.
+  static constexpr std::size_t calls_between_glances = 64;
+  static constexpr double seconds_between_looks = .02;
+
   Progress progress_;
   std::size_t max_vertices_;
   double max_seconds_;
   Clock::time_point start_ = Clock::now();
   std::string phase_;
   std::size_t calls_ = 0;
+  double next_look_ = 0;
   StopReason reason_ = StopReason::finished;
 
   void tell(double fraction) const {

@@ -25,12 +25,21 @@ struct Sampler {
   const Curve &curve;
   const Background<2> &background;
   double limit;
+  std::size_t n_vertices;
+  Monitor &monitor;
   LengthTable table{};
   Index hint = none;
 
   Vertex<2> sample(double t) { return background.vertex(curve.at(t), hint); }
 
+  /// A frozen curve needs its own points, however long it is.
+  void look() const {
+    const double needed = curve.is_frozen ? 0 : std::min(table.total(), limit);
+    monitor.insist(n_vertices + static_cast<std::size_t>(needed));
+  }
+
   void piece(double t0, const Vertex<2> &a, double t1, const Vertex<2> &b, int depth) {
+    look();
     const double whole = edge_length(a, b);
     const double t = .5 * (t0 + t1);
     if (depth < max_sample_depth && table.total() < limit) {
@@ -69,8 +78,8 @@ double LengthTable::length_at(double t) const {
 }
 
 LengthTable tabulate_length(const Curve &curve, const Background<2> &background,
-                            double limit) {
-  return Sampler{curve, background, limit}.run();
+                            double limit, std::size_t n_vertices, Monitor &monitor) {
+  return Sampler{curve, background, limit, n_vertices, monitor}.run();
 }
 
 } // namespace anistar

@@ -1,6 +1,7 @@
 #pragma once
 // The metric length of a curve.
 
+#include "base/monitor.h"
 #include "metric/background.h"
 #include "plane/curves.h"
 
@@ -20,7 +21,11 @@ struct LengthTable {
 };
 
 /// @param limit metric length beyond which the request is absurd and sampling stops
-[[nodiscard]] LengthTable
-tabulate_length(const Curve &curve, const Background<2> &background, double limit);
+/// @param n_vertices there are before this curve
+/// @throws BudgetSpent when the time is up, or there are to be more vertices than the
+/// monitor allows
+[[nodiscard]] LengthTable tabulate_length(const Curve &curve,
+                                          const Background<2> &background, double limit,
+                                          std::size_t n_vertices, Monitor &monitor);
 
 } // namespace anistar

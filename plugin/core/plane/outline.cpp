@@ -1,6 +1,6 @@
 #include "plane/outline.h"
 
-#include "plane/protection.h"
+#include "plane/cuts.h"
 #include "search/box_tree.h"
 
 #include <algorithm>
@@ -11,79 +11,83 @@ namespace {
 
 /// More edges than this on one curve are an absurd request.
 constexpr double most_edges = 1e9;
-/// Parameters this near to a point of the geometry are there: a retreat, which may put
-/// a vertex on that point, would leave an edge without length.
-constexpr double at_point = 1e-7;
-/// Chords are bisected at most this often to meet the Hausdorff bound.
-constexpr int max_bisections = 16;
 
-void bisect_to_bound(const Curve &curve, double t0, double t1, double hausdorff,
-                     int depth, std::vector<double> &cuts) {
-  if (depth < max_bisections && relative_sagitta(curve, t0, t1) > hausdorff) {
-    const double t = middle(curve, t0, t1);
-    bisect_to_bound(curve, t0, t, hausdorff, depth + 1, cuts);
-    bisect_to_bound(curve, t, t1, hausdorff, depth + 1, cuts);
-  } else {
-    cuts.push_back(t1);
-  }
-}
-
-/// Parameters of the vertices of a curve, from 0 to its end.
-std::vector<double> cut(const Curve &curve, const LengthTable &table,
-                        const Shells &shells, double hausdorff) {
-  const double end = static_cast<double>(curve.n_segments());
-  std::vector<double> unit{0};
-  if (curve.is_frozen) {
-    for (std::size_t k = 1; k <= curve.n_segments(); ++k)
-      unit.push_back(static_cast<double>(k));
-    return unit;
-  }
-  if (shells.first)
-    unit.push_back(shells.first->parameter);
-  const double fewest = curve.is_loop ? 3 : 1;
-  const double begin = table.length_at(unit.back());
-  const double length =
-      table.length_at(shells.last ? shells.last->parameter : end) - begin;
-  const double n = std::max(fewest, std::round(length));
-  for (double k = 1; k < n; ++k)
-    unit.push_back(table.parameter_at(begin + length * k / n));
-  if (shells.last)
-    unit.push_back(shells.last->parameter);
-  unit.push_back(end);
-  unit.erase(std::unique(unit.begin(), unit.end()), unit.end());
-  std::vector<double> cuts{0};
-  for (std::size_t k = 0; k + 1 < unit.size(); ++k)
-    bisect_to_bound(curve, unit[k], unit[k + 1], hausdorff, 0, cuts);
-  for (double &t : cuts)
-    if (std::abs(t - std::round(t)) < at_point)
-      t = std::round(t);
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-  return cuts;
-}
-
-/// @throws MeshingError when there would be more vertices than may be.
+/// @throws BudgetSpent, MeshingError as make_outline does
 std::vector<LengthTable> tabulate_lengths(const Geometry &geometry,
                                           const Background<2> &background,
-                                          std::size_t n_vertices,
-                                          const Monitor &monitor) {
+                                          std::size_t n_vertices, Monitor &monitor) {
   std::vector<LengthTable> tables;
   for (const Curve &curve : geometry.curves) {
-    tables.push_back(tabulate_length(curve, background, most_edges));
+    tables.push_back(
+        tabulate_length(curve, background, most_edges, n_vertices, monitor));
     const double total = tables.back().total();
-    if (!(total < most_edges) ||
-        !monitor.has_room(n_vertices + static_cast<std::size_t>(total)))
-      throw MeshingError(
-          "the metric asks for " +
-              (total < most_edges ? std::to_string(static_cast<long>(total))
-                                  : "more than a billion") +
-              " edges on the curve with tag " + std::to_string(curve.tag) +
-              ", beside " + std::to_string(n_vertices) +
-              " vertices before it, more than there may be; it begins",
-          curve.at(0));
-    n_vertices += static_cast<std::size_t>(total);
+    if (!(total < most_edges))
+      throw MeshingError("the metric asks for more than a billion edges on the curve "
+                         "with tag " +
+                             std::to_string(curve.tag) + ", which begins",
+                         curve.at(0));
+    n_vertices +=
+        curve.is_frozen ? curve.n_segments() : static_cast<std::size_t>(total);
+    monitor.insist(n_vertices);
   }
   return tables;
 }
+
+/// Adds curves, cut at given parameters, to an outline.
+class OutlineMaker {
+public:
+  OutlineMaker(const Geometry &geometry, const Background<2> &background)
+      : geometry_(geometry), background_(background),
+        vertex_of_(geometry.points.size(), none) {
+    for (std::size_t v = 0; v < geometry.points.size(); ++v)
+      if (geometry.is_corner[v])
+        (void)fixed(static_cast<Index>(v));
+    for (const auto &[point, region] : geometry.free_points)
+      outline_.free_points.push_back({fixed(point), region});
+  }
+
+  [[nodiscard]] std::size_t n_vertices() const { return outline_.vertices.size(); }
+  [[nodiscard]] Outline take() { return std::move(outline_); }
+
+  void add(std::size_t c, const std::vector<double> &t, const Shells &shells) {
+    const Curve &curve = geometry_.curves[c];
+    // the seam of a loop stays: a parameter must begin somewhere
+    Index previous = fixed(curve.vertices.front());
+    for (std::size_t k = 1; k < t.size(); ++k) {
+      const bool is_last = k + 1 == t.size();
+      const Index next =
+          is_last ? fixed(curve.vertices.back())
+                  : add(curve.at(t[k]), curve.is_frozen ? Triangulation<2>::corner : 1);
+      const Index ball = k == 1 && shells.first   ? shells.first->ball
+                         : is_last && shells.last ? shells.last->ball
+                                                  : none;
+      outline_.edges.push_back(
+          {static_cast<Index>(c), t[k - 1], t[k], previous, next, ball});
+      previous = next;
+    }
+  }
+
+private:
+  const Geometry &geometry_;
+  const Background<2> &background_;
+  std::vector<Index> vertex_of_;
+  Outline outline_;
+
+  Index add(const Vector<2> &x, Index feature) {
+    Index cell = outline_.background.empty() ? none : outline_.background.back();
+    outline_.vertices.push_back(background_.vertex(x, cell));
+    outline_.background.push_back(cell);
+    outline_.feature.push_back(feature);
+    return static_cast<Index>(outline_.vertices.size()) - 1;
+  }
+  Index fixed(Index v) {
+    Index &known = vertex_of_[static_cast<std::size_t>(v)];
+    if (known == none)
+      known =
+          add(geometry_.points[static_cast<std::size_t>(v)], Triangulation<2>::corner);
+    return known;
+  }
+};
 
 bool between(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p) {
   return std::min(a[0], b[0]) <= p[0] && p[0] <= std::max(a[0], b[0]) &&
@@ -109,58 +113,40 @@ bool segments_meet(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p,
 } // namespace
 
 Outline make_outline(const Geometry &geometry, const Background<2> &background,
-                     double hausdorff, const Monitor &monitor) {
-  Outline outline;
-  std::vector<Index> vertex_of(geometry.points.size(), none);
-  const auto add = [&](const Vector<2> &x, Index feature) {
-    Index cell = outline.background.empty() ? none : outline.background.back();
-    outline.vertices.push_back(background.vertex(x, cell));
-    outline.background.push_back(cell);
-    outline.feature.push_back(feature);
-    return static_cast<Index>(outline.vertices.size()) - 1;
-  };
-  const auto fixed = [&](Index v) {
-    Index &known = vertex_of[static_cast<std::size_t>(v)];
-    if (known == none)
-      known =
-          add(geometry.points[static_cast<std::size_t>(v)], Triangulation<2>::corner);
-    return known;
-  };
-  for (std::size_t v = 0; v < geometry.points.size(); ++v)
-    if (geometry.is_corner[v])
-      (void)fixed(static_cast<Index>(v));
-  for (const auto &[point, region] : geometry.free_points)
-    outline.free_points.push_back({fixed(point), region});
+                     double hausdorff, Monitor &monitor) {
+  OutlineMaker maker(geometry, background);
   const std::vector<LengthTable> lengths =
-      tabulate_lengths(geometry, background, outline.vertices.size(), monitor);
+      tabulate_lengths(geometry, background, maker.n_vertices(), monitor);
   const Protection protection =
-      protect_corners(geometry, background, lengths, hausdorff);
+      protect_corners(geometry, background, lengths, hausdorff, monitor);
+  for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
+    const Shells &shells = protection.shells[c];
+    maker.add(c, unit_cuts(geometry.curves[c], lengths[c], shells, hausdorff, monitor),
+              shells);
+    monitor.insist(maker.n_vertices());
+  }
+  Outline outline = maker.take();
   outline.n_balls = static_cast<std::size_t>(protection.n_balls);
   outline.n_unprotected = protection.given_up;
-  for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
-    const Curve &curve = geometry.curves[c];
-    const Shells &shells = protection.shells[c];
-    const std::vector<double> t = cut(curve, lengths[c], shells, hausdorff);
-    // the seam of a loop stays: a parameter must begin somewhere
-    Index previous = fixed(curve.vertices.front());
-    for (std::size_t k = 1; k < t.size(); ++k) {
-      const bool is_last = k + 1 == t.size();
-      const Index next =
-          is_last ? fixed(curve.vertices.back())
-                  : add(curve.at(t[k]), curve.is_frozen ? Triangulation<2>::corner : 1);
-      const Index ball = k == 1 && shells.first   ? shells.first->ball
-                         : is_last && shells.last ? shells.last->ball
-                                                  : none;
-      outline.edges.push_back(
-          {static_cast<Index>(c), t[k - 1], t[k], previous, next, ball});
-      previous = next;
-    }
-  }
   return outline;
 }
 
+Outline outline_at_points(const Geometry &geometry, const Background<2> &background,
+                          double hausdorff, const Monitor &monitor) {
+  OutlineMaker maker(geometry, background);
+  std::size_t n_vertices = maker.n_vertices();
+  for (const Curve &curve : geometry.curves)
+    n_vertices += curve.n_segments();
+  const bool has_room = monitor.has_room(n_vertices);
+  for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
+    const Curve &curve = geometry.curves[c];
+    maker.add(c, has_room ? own_points(curve) : fewest_points(curve, hausdorff), {});
+  }
+  return maker.take();
+}
+
 bool retreat(Geometry &geometry, const Background<2> &background, Outline &outline,
-             const std::vector<Index> &edges) {
+             const std::vector<Index> &edges, const std::function<void()> &look) {
   bool changed = false;
   const auto move = [&](Index v, const Vector<2> &x) {
     const auto i = static_cast<std::size_t>(v);
@@ -173,6 +159,7 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
         edge.ball = none;
   };
   for (Index e : edges) {
+    look();
     const CurveEdge edge = outline.edges[static_cast<std::size_t>(e)];
     Curve &curve = geometry.curves[static_cast<std::size_t>(edge.curve)];
     const double first = std::floor(edge.t0) + 1, last = std::ceil(edge.t1) - 1;
@@ -239,7 +226,8 @@ std::vector<Index> edges_before(const Geometry &geometry, const Outline &outline
   return found;
 }
 
-std::vector<Index> conflicts(const Outline &outline) {
+std::vector<Index> conflicts(const Outline &outline,
+                             const std::function<void()> &look) {
   std::vector<Box<2>> boxes(outline.edges.size());
   const auto x = [&](Index v) -> const Vector<2> & {
     return outline.vertices[static_cast<std::size_t>(v)].x;
@@ -251,6 +239,7 @@ std::vector<Index> conflicts(const Outline &outline) {
   const BoxTree<2> tree(boxes);
   std::vector<Index> found;
   for (std::size_t e = 0; e < boxes.size(); ++e) {
+    look();
     const CurveEdge &one = outline.edges[e];
     bool clashes = x(one.v0) == x(one.v1);
     tree.meeting(boxes[e], [&](Index item) {

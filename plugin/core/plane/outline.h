@@ -6,6 +6,7 @@
 #include "metric/background.h"
 #include "plane/curves.h"
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,17 +36,29 @@ struct Outline {
 /// Cuts every curve into edges of equal metric length near 1, none of which leaves the
 /// curve by more than `hausdorff` times its own length; frozen curves keep their
 /// points.
-/// @throws MeshingError when the metric asks for more vertices than the monitor allows.
+/// @throws BudgetSpent when the time is up, or the metric asks for more vertices than
+/// the monitor allows
+/// @throws MeshingError when it asks for more than can be numbered, or a projection
+/// tears a curve apart
 [[nodiscard]] Outline make_outline(const Geometry &geometry,
                                    const Background<2> &background, double hausdorff,
-                                   const Monitor &monitor);
+                                   Monitor &monitor);
+
+/// Cuts the curves at points of the geometry: at all, or where the monitor has no room
+/// for so many at as few as keep the curves within `hausdorff`. This is what is made
+/// when a budget does not allow unit edges: it asks no projection and takes no longer
+/// than reading the geometry.
+[[nodiscard]] Outline outline_at_points(const Geometry &geometry,
+                                        const Background<2> &background,
+                                        double hausdorff, const Monitor &monitor);
 
 /// Brings edges nearer to the geometry's own polyline, which is valid: an edge that
 /// spans points of the geometry is split at one, another becomes a piece of a straight
 /// segment. A protecting ball whose shell would not stay one is given up.
+/// @param look is called now and then; what it throws comes through
 /// @returns whether anything changed.
 bool retreat(Geometry &geometry, const Background<2> &background, Outline &outline,
-             const std::vector<Index> &edges);
+             const std::vector<Index> &edges, const std::function<void()> &look);
 
 /// The protecting balls that the edges cross.
 [[nodiscard]] std::size_t count_balls(std::span<const CurveEdge> edges);
@@ -56,6 +69,8 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
 edges_before(const Geometry &geometry, const Outline &outline, const Vector<2> &x);
 
 /// Edges that meet others anywhere but at a common end, or a free point.
-[[nodiscard]] std::vector<Index> conflicts(const Outline &outline);
+/// @param look is called now and then; what it throws comes through
+[[nodiscard]] std::vector<Index> conflicts(const Outline &outline,
+                                           const std::function<void()> &look);
 
 } // namespace anistar

@@ -39,10 +39,10 @@ struct Cut {
 class CornerBall {
 public:
   CornerBall(const Geometry &geometry, std::span<const LengthTable> lengths,
-             double hausdorff, const Vector<2> &x, const SymmetricTensor<2> &M,
-             std::vector<Leg> legs)
-      : geometry_(geometry), lengths_(lengths), hausdorff_(hausdorff), x_(x), M_(M),
-        legs_(std::move(legs)) {
+             double hausdorff, Monitor &monitor, const Vector<2> &x,
+             const SymmetricTensor<2> &M, std::vector<Leg> legs)
+      : geometry_(geometry), lengths_(lengths), hausdorff_(hausdorff),
+        monitor_(monitor), x_(x), M_(M), legs_(std::move(legs)) {
     for (Leg &leg : legs_) {
       const double s = std::min(1., table(leg).total());
       leg.direction = at(leg, parameter(leg, s)) - x_;
@@ -99,6 +99,7 @@ private:
   const Geometry &geometry_;
   std::span<const LengthTable> lengths_;
   double hausdorff_;
+  Monitor &monitor_;
   Vector<2> x_;
   SymmetricTensor<2> M_;
   std::vector<Leg> legs_; ///< counter-clockwise
@@ -186,6 +187,7 @@ private:
     const std::size_t n = knots.size();
     double inside = near_end(leg), outside = far_end(leg);
     for (std::size_t k = 1; k < n; ++k) {
+      monitor_.insist(0);
       const double t = knots[leg.leaves ? k : n - 1 - k];
       if (distance(leg, t) >= radius) {
         outside = t;
@@ -194,6 +196,7 @@ private:
       inside = t;
     }
     for (int step = 0; step < n_bisections; ++step) {
+      monitor_.insist(0);
       const double t = .5 * (inside + outside);
       (distance(leg, t) < radius ? inside : outside) = t;
     }
@@ -218,7 +221,8 @@ std::vector<std::vector<Leg>> legs_at_points(const Geometry &geometry) {
 } // namespace
 
 Protection protect_corners(const Geometry &geometry, const Background<2> &background,
-                           std::span<const LengthTable> lengths, double hausdorff) {
+                           std::span<const LengthTable> lengths, double hausdorff,
+                           Monitor &monitor) {
   Protection out;
   out.shells.resize(geometry.curves.size());
   std::vector<CornerBall> corners;
@@ -229,8 +233,8 @@ Protection protect_corners(const Geometry &geometry, const Background<2> &backgr
     if (legs[v].size() < 2)
       continue;
     const Vector<2> &x = geometry.points[v];
-    corners.emplace_back(geometry, lengths, hausdorff, x, background.metric(x, cell),
-                         legs[v]);
+    corners.emplace_back(geometry, lengths, hausdorff, monitor, x,
+                         background.metric(x, cell), legs[v]);
     for (const auto &group : corners.back().groups())
       for (const Leg &leg : group)
         is_sharp[leg.curve][leg.leaves ? 0 : 1] = true;

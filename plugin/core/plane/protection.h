@@ -1,6 +1,7 @@
 #pragma once
 // Protecting balls at sharp corners.
 
+#include "base/monitor.h"
 #include "plane/length_table.h"
 
 #include <optional>
@@ -37,9 +38,10 @@ struct Protection {
 /// length; legs too short for a common one are left alone.
 /// @param lengths table of every curve
 /// @param hausdorff bound for the distance of an edge from its curve, relative
+/// @throws BudgetSpent when the time is up
 [[nodiscard]] Protection protect_corners(const Geometry &geometry,
                                          const Background<2> &background,
                                          std::span<const LengthTable> lengths,
-                                         double hausdorff);
+                                         double hausdorff, Monitor &monitor);
 
 } // namespace anistar

@@ -53,6 +53,44 @@ void check_gap(const Background<2> &background, const GeometryInput &geometry) {
   }
 }
 
+/// The user's projection, each call of which may take long.
+Projection timed(const Projection &projection, Monitor &monitor) {
+  if (!projection)
+    return {};
+  return [&](const Vector<2> &x, Index tag) {
+    const Vector<2> moved = projection(x, tag);
+    monitor.note_time();
+    return moved;
+  };
+}
+
+struct Start {
+  MeshOnCurves mesh;
+  std::size_t n_sharp_corners = 0;
+  bool has_unit_curves = true;
+};
+
+/// A first mesh, on curves that are cut to unit edges or, where a budget does not allow
+/// that, at points of the geometry.
+Start make_start(Geometry &geometry, const Background<2> &background, double hausdorff,
+                 Monitor &monitor, Stopwatch &watch) {
+  try {
+    Outline outline = make_outline(geometry, background, hausdorff, monitor);
+    const std::size_t n_sharp = outline.n_balls + outline.n_unprotected;
+    watch.phase("size");
+    return {triangulate(geometry, background, std::move(outline),
+                        [&] { monitor.insist(0); }),
+            n_sharp, true};
+  } catch (const BudgetSpent &) {
+    watch.phase("size");
+    // the user may still interrupt this; a budget has nothing less to fall back upon
+    return {triangulate(geometry, background,
+                        outline_at_points(geometry, background, hausdorff, monitor),
+                        [&] { (void)monitor.keep_going(0, 0); }),
+            0, false};
+  }
+}
+
 void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
            std::map<std::string, double> &counts) {
   const auto control = [&](double shortest, double longest) {
@@ -157,17 +195,15 @@ RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &inp
 
   watch.phase("curves");
   check_gap(background, input);
-  Geometry geometry = make_geometry(input, &projection);
-  Outline outline =
-      make_outline(geometry, background, settings.hausdorff_number, monitor);
-
-  watch.phase("size");
-  const std::size_t n_sharp = outline.n_balls + outline.n_unprotected;
-  MeshOnCurves on_curves = triangulate(geometry, background, std::move(outline));
-  const std::size_t n_protected = count_balls(on_curves.curve_edges);
+  const Projection project = timed(projection, monitor);
+  Geometry geometry = make_geometry(input, &project);
+  Start start =
+      make_start(geometry, background, settings.hausdorff_number, monitor, watch);
+  const std::size_t n_protected = count_balls(start.mesh.curve_edges);
   out.counts["protected_corners"] = static_cast<double>(n_protected);
-  out.counts["unprotected_corners"] = static_cast<double>(n_sharp - n_protected);
-  Workspace w{on_curves, geometry, background, settings.hausdorff_number};
+  out.counts["unprotected_corners"] =
+      static_cast<double>(start.n_sharp_corners - n_protected);
+  Workspace w{start.mesh, geometry, background, settings.hausdorff_number};
   Legaliser legaliser(w.mesh);
   // the pure mode starts from the boundary alone
   const bool is_pure = settings.consistency == ConsistencyMode::pure;
@@ -192,7 +228,9 @@ RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &inp
   out.counts["rejected"] = static_cast<double>(refined.rejected);
   out.counts["flips"] = static_cast<double>(legaliser.n_flips());
   out.counts["capped"] = static_cast<double>(legaliser.n_capped());
-  out.reason = monitor.reason();
+  const bool is_short =
+      !start.has_unit_curves && monitor.reason() == StopReason::finished;
+  out.reason = is_short ? StopReason::max_vertices : monitor.reason();
   return out;
 }
 

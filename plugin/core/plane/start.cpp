@@ -26,7 +26,7 @@ constexpr int max_retreats = 100;
 
 using EdgeKey = std::pair<Index, Index>;
 
-Cdt insert_outline(const Outline &outline) {
+Cdt insert_outline(const Outline &outline, const std::function<void()> &look) {
   std::vector<std::pair<Kernel::Point_2, Index>> points;
   for (std::size_t v = 0; v < outline.vertices.size(); ++v)
     points.emplace_back(
@@ -40,9 +40,11 @@ Cdt insert_outline(const Outline &outline) {
   for (std::size_t v = 0; v < handle.size(); ++v)
     if (handle[v] == nullptr)
       throw MeshingError("two points of the geometry coincide", outline.vertices[v].x);
-  for (const CurveEdge &edge : outline.edges)
+  for (const CurveEdge &edge : outline.edges) {
+    look();
     cdt.insert_constraint(handle[static_cast<std::size_t>(edge.v0)],
                           handle[static_cast<std::size_t>(edge.v1)]);
+  }
   return cdt;
 }
 
@@ -135,12 +137,12 @@ Vector<2> place_of(const Outline &outline, Index e) {
 }
 
 void resolve_conflicts(Geometry &geometry, const Background<2> &background,
-                       Outline &outline) {
+                       Outline &outline, const std::function<void()> &look) {
   for (int round = 0; round < max_retreats; ++round) {
-    const std::vector<Index> clashing = conflicts(outline);
+    const std::vector<Index> clashing = conflicts(outline, look);
     if (clashing.empty())
       return;
-    if (!retreat(geometry, background, outline, clashing)) {
+    if (!retreat(geometry, background, outline, clashing, look)) {
       throw MeshingError("the facets of the geometry cross",
                          place_of(outline, clashing.front()));
     }
@@ -148,7 +150,7 @@ void resolve_conflicts(Geometry &geometry, const Background<2> &background,
   throw MeshingError(
       "after " + std::to_string(max_retreats) +
           " retreats to the polyline the curves of the geometry still cross",
-      place_of(outline, conflicts(outline).front()));
+      place_of(outline, conflicts(outline, look).front()));
 }
 
 /// The curve edges that keep a free point out of its region.
@@ -177,17 +179,19 @@ std::vector<Index> misplaced(const Cdt &cdt, const std::vector<Component> &parts
 } // namespace
 
 MeshOnCurves triangulate(Geometry &geometry, const Background<2> &background,
-                         Outline outline) {
+                         Outline outline, const std::function<void()> &look) {
   std::vector<Index> wrong;
   for (int round = 0; round < max_retreats; ++round) {
-    resolve_conflicts(geometry, background, outline);
-    Cdt cdt = insert_outline(outline);
+    resolve_conflicts(geometry, background, outline, look);
+    Cdt cdt = insert_outline(outline, look);
     std::map<EdgeKey, Index> edge_of;
     for (std::size_t e = 0; e < outline.edges.size(); ++e) {
       const auto [a, b] = std::minmax(outline.edges[e].v0, outline.edges[e].v1);
       edge_of[{a, b}] = static_cast<Index>(e);
     }
+    look();
     const auto parts = components(cdt, outline, edge_of, geometry);
+    look();
     wrong = misplaced(cdt, parts, geometry, outline);
     for (const Component &part : parts)
       if (part.contradicts)
@@ -196,7 +200,7 @@ MeshOnCurves triangulate(Geometry &geometry, const Background<2> &background,
       return extract(outline, parts, edge_of);
     std::sort(wrong.begin(), wrong.end());
     wrong.erase(std::unique(wrong.begin(), wrong.end()), wrong.end());
-    if (!retreat(geometry, background, outline, wrong))
+    if (!retreat(geometry, background, outline, wrong, look))
       break;
   }
   throw MeshingError("the facets of the geometry do not enclose its regions",

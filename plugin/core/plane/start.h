@@ -16,8 +16,10 @@ struct MeshOnCurves {
 /// outside; regions come from the sides of the curves.
 /// The outline retreats to the polyline of the geometry where its chords cross or leave
 /// a region on the wrong side, so that a valid geometry always has a start.
+/// @param look is called now and then; what it throws comes through
 /// @throws MeshingError when the geometry itself crosses.
-[[nodiscard]] MeshOnCurves
-triangulate(Geometry &geometry, const Background<2> &background, Outline outline);
+[[nodiscard]] MeshOnCurves triangulate(Geometry &geometry,
+                                       const Background<2> &background, Outline outline,
+                                       const std::function<void()> &look);
 
 } // namespace anistar

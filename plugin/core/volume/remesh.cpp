@@ -267,6 +267,17 @@ void certify_stars(Volume &volume, Monitor &monitor, const RemeshSettings &setti
   renumber(volume, settings.threads);
 }
 
+/// The user's projection, each call of which may take long.
+SurfaceProjection timed(SurfaceProjection projection, Monitor &monitor) {
+  if (!projection)
+    return {};
+  return [projection = std::move(projection), &monitor](const Vector<3> &x, Index tag) {
+    const Vector<3> moved = projection(x, tag);
+    monitor.note_time();
+    return moved;
+  };
+}
+
 } // namespace
 
 VolumeResult remesh_volume(const VolumeInput &input,
@@ -281,8 +292,8 @@ VolumeResult remesh_volume(const VolumeInput &input,
     watch.phase("background");
     const Background<3> background(input.surface.points, input.cells, metric,
                                    settings.threads);
-    Volume volume =
-        make_volume(input, metric, background, geometry, std::move(projection));
+    Volume volume = make_volume(input, metric, background, geometry,
+                                timed(std::move(projection), monitor));
     VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed,
                         settings.threads);
     watch.phase("size");
