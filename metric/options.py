@@ -156,6 +156,11 @@ class MetricOptions:
         if all(getattr(self, name) is None for name in TARGETS):
             raise ValueError(f"give {', '.join(TARGETS[:-1])} or {TARGETS[-1]}, got none of them")
 
+    @property
+    def has_count(self) -> bool:
+        """Whether the target is a number of vertices or elements, known before any metric."""
+        return self.target_complexity is not None or self.target_elements is not None
+
     def complexity_for(self, dim: int) -> float:
         """Return the complexity to aim at in dimension `dim`, before any mesh is known.
 

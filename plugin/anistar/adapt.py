@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .aliases import canonical
+from .demand import check_targets
 from .errors import MeshingError
 from .fields import Field, as_fields
 from .mesh import Mesh
@@ -192,6 +193,9 @@ def adapt(
     require(AdaptOptions, options=options)
     checked = as_fields(mesh, fields)
     names = metric_field_names(checked, options.metric_fields)
+    if options.metric.has_count:
+        target = options.metric.complexity_for(mesh.dim)
+        check_targets(mesh, options.metric, [target], options.remesh)
     chosen = {name: checked[name] for name in names}
     ledger, done, corrections = _to_count(mesh, chosen, options, geometry, project)
     carried = transfer(mesh, fields, done.mesh, options.transfer)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .adapt import AdaptOptions, AdaptReport, Floats, adapt, metric_field_names
+from .demand import check_targets
 from .errors import MeshingError
 from .fields import Field, as_fields
 from .interpolation_error import interpolation_error
@@ -98,8 +99,15 @@ class LoopOptions:
         if self.complexities:
             return self.complexities[iteration] if iteration < len(self.complexities) else None
         metric = self.adapt.metric
-        is_set = metric.target_complexity is not None or metric.target_elements is not None
-        return float((metric.complexity_for(dim) if is_set else START) * GROWTH**iteration)
+        start = metric.complexity_for(dim) if metric.has_count else START
+        return float(start * GROWTH**iteration)
+
+    def sure_complexities(self, dim: int) -> Sequence[float]:
+        """Return the targets that are known before the first solve."""
+        if self.complexities:
+            return self.complexities[: self.max_iterations]
+        first = self.complexity_after(0, dim)
+        return () if first is None else (first,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,11 +232,16 @@ def adapt_loop(
 
     Raises
     ------
+    MeshingError
+        If the mesh of a target has no room in memory, before anything is solved.
     LoopError
         If `solve` raises or returns what no metric can be made of, or the mesher fails. The
         message names the iteration; the exception carries the finished steps.
     """
     require(LoopOptions, options=options)
+    check_targets(
+        mesh, options.adapt.metric, options.sure_complexities(mesh.dim), options.adapt.remesh
+    )
     geometry = geometry if geometry is not None else mesh
     steps: list[Step] = list(finished)
     try:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .demand import check_demand
 from .errors import MeshingError
 from .mesh import Mesh
 from .metric import check_metric
@@ -17,6 +18,7 @@ from .options import require
 from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport, report_of
+from .volume_demand import check_sizes
 from .volume_remesh import check_surfaces, remesh_volume
 
 Float = NDArray[np.float64]
@@ -64,7 +66,9 @@ def remesh(
         are those of `mesh`, and the geometry gives the shape of the curved ones.
     project : callable, optional
         ``project(points, facet_tag)`` moves new points of curves, in 3D of curved surfaces, onto
-        the true geometry. In 3D ridges keep to the curve through the points of the geometry.
+        the true geometry: by at most a quarter of the extent of the domain, and so that a point
+        that is projected again stays. In 3D ridges keep to the curve through the points of the
+        geometry.
 
     Returns
     -------
@@ -75,8 +79,9 @@ def remesh(
     MetricError
         If a tensor is not symmetric positive definite; the point is named.
     MeshingError
-        If the facets of the geometry cross, the geometry is not the domain of `mesh`, or a tag
-        would be lost.
+        If the facets of the geometry cross, the geometry is not the domain of `mesh`, a tag
+        would be lost, the mesh has no room in memory (see `RemeshOptions`), or `project` does
+        not land.
 
     References
     ----------
@@ -93,6 +98,8 @@ def remesh(
     scale = _unit_scale(mesh.points)
     call = _call_core if mesh.dim == 2 else remesh_volume
     metric /= scale * scale  # a copy, as check_metric returns it
+    check_sizes(mesh, metric, scale)
+    check_demand(mesh, metric, scale, options)
     raw = call(mesh, metric, geometry, project, options, scale)
     points, metric = raw["points"], raw["metric"]
     points /= scale
@@ -148,7 +155,7 @@ def _call_core(
             np.array(options.frozen_tags, dtype=np.int32),
             options.ridge_angle,
             options.as_settings(),
-            None if project is None else pointwise(project, scale),
+            None if project is None else pointwise(project, geometry, scale),
             options.callback,
         )
     except _core.MeshingError as error:

@@ -22,9 +22,18 @@ class RemeshOptions:
     Parameters
     ----------
     max_vertices : int, optional
-        Refinement stops there; the mesh is valid but ``report.converged`` is False.
+        Refinement stops there; the mesh is valid but ``report.converged`` is False. It has more
+        vertices only where the shape of the domain needs them: in 2D its corners and frozen
+        curves, and as many points of the geometry as keep to curves; in 3D all the points of the
+        given mesh that no operation could take out.
     max_seconds : float, optional
-        The call stops after this wall time with the mesh it has by then.
+        The call stops after this wall time with the mesh it has by then; when it ends before the
+        curves of a 2D domain are divided, that is a mesh of the points of the geometry. One call
+        of `project` and the reading of the input are not cut short.
+    max_memory : float, optional
+        Bytes. A metric whose mesh, as far as the budgets above let it grow, is estimated to take
+        more is refused before anything is made. None is what the machine, the container and the
+        limits of the process have left; ``math.inf`` refuses nothing.
     frozen_tags : sequence of int
         Facets with these tags are kept as they are.
     ridge_angle : float
@@ -54,6 +63,7 @@ class RemeshOptions:
 
     max_vertices: int | None = None
     max_seconds: float | None = None
+    max_memory: float | None = None
     frozen_tags: Sequence[int] = ()
     ridge_angle: float = 45.0
     hausdorff_number: float = 0.1
@@ -73,6 +83,8 @@ class RemeshOptions:
             raise ValueError(f"max_vertices must be at least 3, got {self.max_vertices}")
         if self.max_seconds is not None and not self.max_seconds > 0:
             raise ValueError(f"max_seconds must be positive, got {self.max_seconds}")
+        if self.max_memory is not None and not self.max_memory > 0:
+            raise ValueError(f"max_memory must be positive, got {self.max_memory}")
         if not 0 < self.ridge_angle <= 180:
             raise ValueError(f"ridge_angle must be in (0, 180] degrees, got {self.ridge_angle}")
         if not 0 < self.hausdorff_number <= 1:

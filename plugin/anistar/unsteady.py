@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .adapt import AdaptOptions, Floats, metric_field_names
+from .demand import check_targets
 from .errors import MeshingError
 from .fields import Field, as_fields
 from .mesh import Mesh
@@ -200,7 +201,8 @@ def unsteady_loop(
     ValueError
         If the times do not ascend, or a field does not fit.
     MeshingError
-        If `advance` or a stage fails; the message names the window.
+        If `advance` or a stage fails; the message names the window. If the mesh of the target
+        has no room in memory, before anything is solved.
 
     References
     ----------
@@ -211,6 +213,9 @@ def unsteady_loop(
     options = UnsteadyOptions() if options is None else options
     require(UnsteadyOptions, options=options)
     instants = _ascending(times)
+    if options.adapt.metric.has_count:
+        target = options.adapt.metric.complexity_for(mesh.dim)
+        check_targets(mesh, options.adapt.metric, [target], options.adapt.remesh)
     shape = _Shape(geometry if geometry is not None else mesh, project)
     now = Instant(instants[0], mesh, dict(fields(mesh) if callable(fields) else fields))
     as_fields(mesh, now.fields)

@@ -14,7 +14,6 @@ from .overlap import crossing_facets, doubled_cell, touching_point
 from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport
-from .volume_demand import check_count, check_sizes
 
 
 def check_surfaces(mesh: Mesh, report: RemeshReport) -> None:
@@ -64,16 +63,9 @@ def remesh_volume(
     ------
     ValueError
         If an option asks for what exists in 2D only.
-    MetricError
-        If the metric asks for lengths out of the range of double precision.
-    MeshingError
-        If it asks for more cells than can be numbered and nothing bounds the run.
     """
     if options.until_consistent == "pure":
         raise ValueError('until_consistent="pure" exists in 2D only: use until_consistent=True')
-    check_sizes(mesh, metric, scale)
-    if options.max_vertices is None and options.max_seconds is None:
-        check_count(mesh, metric, scale)
     raw: dict[str, Any] = _core.remesh3(
         mesh.points * scale,
         mesh.cells,
@@ -92,7 +84,7 @@ def remesh_volume(
         np.array(options.frozen_tags, dtype=np.int32),
         options.ridge_angle,
         options.as_settings(),
-        None if project is None else pointwise(project, scale),
+        None if project is None else pointwise(project, geometry, scale),
         options.callback,
     )
     return raw

@@ -1,11 +1,13 @@
 import dataclasses
 import json
+from importlib import import_module
 
 import numpy as np
 import pytest
 from meshes import annulus, cube, slit, square, two_regions
 
 from anistar.adapt import AdaptOptions, adapt
+from anistar.errors import MeshingError
 from anistar.fields import Field
 from anistar.interpolation_error import l2_error
 from anistar.metric import MetricOptions, estimate, from_fields
@@ -275,6 +277,28 @@ def test_a_mesh_that_a_budget_stopped_is_not_made_again():
     assert validate(done.mesh) == []
     assert not done.report.remesh.converged
     assert done.report.corrections == 0
+
+
+@pytest.mark.parametrize("target", [{"target_complexity": 1e12}, {"target_elements": 2e12}])
+def test_a_target_that_no_machine_has_room_for_is_refused_before_a_metric_is_made(
+    target, monkeypatch
+):
+    monkeypatch.setattr(import_module("anistar.adapt"), "from_fields", None)
+    mesh = square(8)
+    message = (
+        r"the target complexity .*e\+1[12] asks for about 1.*e\+12 vertices, which take .* memory"
+    )
+    with pytest.raises(MeshingError, match=message):
+        adapt(mesh, {"u": layer(mesh.points)}, AdaptOptions(metric=MetricOptions(**target)))
+
+
+@pytest.mark.parametrize("held", [{"h_min": 0.05}, {"h_min": lambda x: 0.05 + 0 * x[:, 0]}])
+def test_a_huge_target_that_a_smallest_size_holds_back_is_taken(held):
+    mesh = square(8)
+    options = AdaptOptions(metric=MetricOptions(target_complexity=1e12, **held))
+    done = adapt(mesh, {"u": layer(mesh.points)}, options)
+    assert validate(done.mesh) == []
+    assert not done.report.metric.reached
 
 
 def test_in_3d_the_count_is_met_and_the_estimate_is_near_it():

@@ -127,6 +127,36 @@ def test_bad_input_is_one_line_that_names_the_culprit(case, folder, capsys):
     assert sorted(path for path in folder.iterdir() if path.name != "run") == before
 
 
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (
+            "adapt in.vtu -o o.vtu --target-complexity 1e12",
+            "the target complexity 1e+12 asks for about 1.2e+12 vertices, which take",
+        ),
+        (
+            "adapt in.vtu -o o.vtu --target-complexity 1e4 --max-memory 1e6",
+            "which take 0.00577 GB of memory, more than max_memory, 0.001 GB",
+        ),
+        (
+            "loop in.vtu --command solve{mesh}{solution} --complexities 9,1e12 -o run",
+            "the target complexity 1e+12 asks for about 1.2e+12 vertices, which take",
+        ),
+        (
+            "remesh in.vtu --metric fine.sol -o o.vtu",
+            "the metric asks for about 1.2e+13 vertices, which take",
+        ),
+    ],
+)
+def test_a_mesh_that_has_no_room_in_memory_is_refused_at_once(words, expected, folder, capsys):
+    mesh = square(4)
+    write_metric("fine.sol", mesh, np.tile(1e13 * np.eye(2), (mesh.n_points, 1, 1)))
+    assert run(words) == 1
+    said = capsys.readouterr().err
+    assert expected in said
+    assert said.count("\n") == 1
+
+
 def test_a_failing_solver_ends_with_1_and_its_last_words(folder, capsys):
     (folder / "solver.py").write_text("import sys; sys.exit('matrix is singular')")
     command = f"{sys.executable} solver.py {{mesh}} {{solution}}"

@@ -64,6 +64,18 @@ def test_the_target_error_is_reached_by_doubling_the_complexity():
     assert [step.complexity for step in loop.steps[1:4]] == [100, 200, 400]
 
 
+@pytest.mark.parametrize(
+    "options",
+    [
+        LoopOptions(complexities=[100, 1e12]),
+        LoopOptions(adapt=starting_at(1e12), target_error=1e-3),
+    ],
+)
+def test_a_target_that_no_machine_has_room_for_is_refused_before_the_first_solve(options):
+    with pytest.raises(MeshingError, match=r"the target complexity 1e\+12 asks for .* max_memory"):
+        adapt_loop(None, square(8), options)
+
+
 def test_a_vector_counts_with_all_its_components():
     def solve(mesh, fields):
         u = layer(mesh.points)

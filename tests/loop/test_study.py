@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from meshes import cube, square
 
+from anistar.errors import MeshingError
 from anistar.study import convergence_study, observed_order
 from anistar.validation import validate
 
@@ -25,6 +26,11 @@ def test_interpolation_converges_at_second_order():
     for row, step in zip(study.table, study.steps, strict=True):
         assert validate(step.mesh) == []
         assert row.points == step.mesh.n_points
+
+
+def test_a_complexity_that_no_machine_has_room_for_is_refused_before_the_first_solve():
+    with pytest.raises(MeshingError, match=r"the target complexity 1e\+12 asks for"):
+        convergence_study(None, square(16), [400, 1e12], exact=layer)
 
 
 def test_an_error_function_takes_the_place_of_the_exact_solution():

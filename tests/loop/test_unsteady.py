@@ -56,6 +56,12 @@ def test_the_mesh_of_each_window_is_fine_wherever_the_front_is_in_it():
     assert meshes[4] is meshes[1]
 
 
+def test_a_target_that_no_machine_has_room_for_is_refused_before_the_first_step():
+    adapt = anistar.AdaptOptions.from_dict({"target_complexity": 1e12})
+    with pytest.raises(anistar.MeshingError, match=r"the target complexity 1e\+12 asks for"):
+        unsteady_loop(None, square(10), first, TIMES, UnsteadyOptions(adapt=adapt))
+
+
 def standing_run(number):
     """Run a solution that stands still, from values changed in the last digits."""
 

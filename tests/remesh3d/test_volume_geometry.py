@@ -6,7 +6,7 @@ from meshes import cube, two_region_cube
 from remesh3d.domains import changed, layer, rotated, turning, uniform
 from remesh3d.test_curved import ball, cylinder, rim_of
 
-from anistar import Mesh, RemeshOptions, remesh, validate
+from anistar import Mesh, MeshingError, RemeshOptions, remesh, validate
 from anistar.metric import curvature_metric, intersected
 from anistar.topology import cell_volumes, edge_lengths, facet_measures, unique_edges
 
@@ -41,17 +41,29 @@ def test_a_projection_is_called_for_curved_surfaces_only_and_leaves_planes_and_r
 
 
 def test_a_projection_that_tears_the_surface_apart_leaves_a_valid_mesh():
-    random = np.random.default_rng(0)
     mesh = cylinder(4)
     options = RemeshOptions(max_vertices=600)
     done = remesh(
         mesh,
         uniform(mesh, 0.3),
         options,
-        project=lambda points, tag: points + random.normal(0, 0.1, points.shape),
+        project=lambda points, tag: np.round(points * 7) / 7,
     )
     assert [problem.kind for problem in validate(done.mesh)] == []
     assert set(done.mesh.facet_tags.tolist()) == {1, 5, 6}
+
+
+@pytest.mark.parametrize(
+    ("project", "message"),
+    [
+        (lambda points, tag: points + 100, r"project moves \(.*\), a point of .* tag 1, by 173 to"),
+        (lambda points, tag: points + 0.01, "project does not land: .* tag 1, is moved by another"),
+    ],
+)
+def test_a_projection_that_does_not_land_is_refused(project, message):
+    mesh = cylinder(4)
+    with pytest.raises(MeshingError, match=message):
+        remesh(mesh, uniform(mesh, 0.2), project=project)
 
 
 @pytest.mark.parametrize(

@@ -126,6 +126,7 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "ridge_angle": (float, "angle in degrees from which a corner is kept (Mmg: -ar)"),
     "max_vertices": (int, "stop at this number of vertices"),
     "max_seconds": (float, "stop after this time"),
+    "max_memory": (float, "refuse what takes more bytes; inf: nothing (default: what is free)"),
     "frozen_tags": (_integers, "facet tags that are kept as they are, comma-separated"),
     "agreement": (_agreement, "move vertices until the stars agree: auto (in 3D: not), on or off"),
     "until_consistent": (
