@@ -13,6 +13,9 @@ from .mesh import MeshLike
 
 Array = NDArray[np.float64]
 
+CANCELLED = 1e-10
+"""An eigenvalue below this fraction of the largest is round-off for the most part."""
+
 
 def distortion(mesh: MeshLike, M: Array) -> Array:
     """Logarithm of the distortion of `M` over one unit of metric length, for each edge.
@@ -48,7 +51,10 @@ def distortion(mesh: MeshLike, M: Array) -> Array:
     M = check_metric(M, n_points=n, dim=d)
     p, q = mesh_edges(mesh).T
     ratio = eigenvalues(congruent(lower_factor(M[p]), M[q]))
-    gamma = 0.5 * np.maximum(log(ratio[:, -1]), -log(ratio[:, 0]))
+    least, most = ratio[:, 0], ratio[:, -1]
+    lost = np.flatnonzero(least < CANCELLED * most)  # the other way round it is the largest
+    least[lost] = 1.0 / eigenvalues(congruent(lower_factor(M[q[lost]]), M[p[lost]]))[:, -1]
+    gamma = 0.5 * np.maximum(log(most), -log(least))
     return np.asarray(gamma / edge_lengths(mesh.points[q] - mesh.points[p], M[p], M[q]))
 
 

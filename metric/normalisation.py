@@ -201,7 +201,7 @@ def _field(
     mesh: MeshLike, H: Array, h_max: Bound, *, steps: float = 1.0, name: str = "Hessian"
 ) -> HessianField:
     n, d = mesh.points.shape
-    values, vectors = eigh(check_tensors(H, n_points=n, dim=d, name=name))
+    values, vectors = _spectra(check_tensors(H, n_points=n, dim=d, name=name))
     volumes = cell_volumes(mesh)
     featureless = diameter(mesh) if h_max is None else h_max
     _, size, _ = check_bounds(n, h_min=None, h_max=featureless, a_max=None, points=mesh.points)
@@ -215,6 +215,17 @@ def _field(
         size=size,
         steps=steps,
     )
+
+
+def _spectra(T: Array) -> tuple[Array, Array]:
+    """Return eigenvalues and eigenvectors of tensors in any unit.
+
+    The squares of their entries may leave the range of doubles; the power of two that brings
+    them back changes no bit of what is in range.
+    """
+    exponent = int(np.frexp(np.abs(T).max(initial=0.0))[1])
+    values, vectors = eigh(np.ldexp(T, -exponent))
+    return np.ldexp(values, exponent), vectors
 
 
 def optimal(fields: Sequence[HessianField], C: float, p: float) -> list[Array]:

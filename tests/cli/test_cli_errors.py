@@ -136,7 +136,7 @@ def test_bad_input_is_one_line_that_names_the_culprit(case, folder, capsys):
         ),
         (
             "adapt in.vtu -o o.vtu --target-complexity 1e4 --max-memory 1e6",
-            "which take 0.00577 GB of memory, more than max_memory, 0.001 GB",
+            "which take 5.08 MB of memory, more than max_memory, 1 MB",
         ),
         (
             "loop in.vtu --command solve{mesh}{solution} --complexities 9,1e12 -o run",
