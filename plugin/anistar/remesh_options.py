@@ -28,8 +28,9 @@ class RemeshOptions:
         given mesh that no operation could take out.
     max_seconds : float, optional
         The call stops after this wall time with the mesh it has by then; when it ends before the
-        curves of a 2D domain are divided, that is a mesh of the points of the geometry. One call
-        of `project` and the reading of the input are not cut short.
+        curves of a 2D domain are divided, that is a mesh of the points of the geometry. Reading
+        the input and measuring the result take their time whatever the bound, and an operation
+        that is under way is finished: in 2D it calls `project` up to some forty times.
     max_memory : float, optional
         Bytes. A metric whose mesh, as far as the budgets above let it grow, is estimated to take
         more is refused before anything is made. None is what the machine, the container and the
