@@ -56,7 +56,8 @@ def check_demand(mesh: Mesh, metric: Floats, scale: float, options: RemeshOption
     with np.errstate(over="ignore"):
         densest = float(np.sqrt(np.einsum("nii->ni", metric)).prod(axis=1).max())
         n_vertices = vertices_for(densest * float(extents.prod()), mesh.dim)
-        along = float(_metric_measures(mesh, metric, scale).sum())
+        divided = ~np.isin(mesh.facet_tags, np.array(options.frozen_tags, dtype=np.int32))
+        along = float(_metric_measures(mesh.facets[divided], mesh.points * scale, metric).sum())
     if fits(max(n_vertices, along), mesh.dim, options):
         return
     with np.errstate(over="ignore"):
@@ -152,16 +153,16 @@ def _told(n_bytes: float) -> str:
     return f"{n_bytes / 1000.0**power:.3g} {units[power - 1]}"
 
 
-def _metric_measures(mesh: Mesh, metric: Floats, scale: float) -> Floats:
+def _metric_measures(facets: NDArray[np.int32], points: Floats, metric: Floats) -> Floats:
     """Return how many vertices each facet asks for by its length or area in the metric.
 
     Where the domain is thinner than the cells, it is the facets that decide.
     """
-    corners = scale * mesh.points[mesh.facets]
-    M = metric[mesh.facets].mean(axis=1)
+    corners = points[facets]
+    M = metric[facets].mean(axis=1)
     edges = corners[:, 1:] - corners[:, :1]
     gram = np.einsum("kai,kij,kbj->kab", edges, M, edges)
-    if mesh.dim == 2:
+    if points.shape[1] == 2:
         return np.asarray(np.sqrt(gram[:, 0, 0]))
     square = gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2
     area = 0.5 * np.sqrt(np.maximum(square, 0.0))

@@ -11,6 +11,8 @@ namespace {
 
 /// More edges than this on one curve are an absurd request.
 constexpr double most_edges = 1e9;
+/// A frozen curve is not divided: only the angles at its corners ask for its length.
+constexpr double most_frozen = 1e5;
 
 /// @throws BudgetSpent, MeshingError as make_outline does
 std::vector<LengthTable> tabulate_lengths(const Geometry &geometry,
@@ -18,10 +20,10 @@ std::vector<LengthTable> tabulate_lengths(const Geometry &geometry,
                                           std::size_t n_vertices, Monitor &monitor) {
   std::vector<LengthTable> tables;
   for (const Curve &curve : geometry.curves) {
-    tables.push_back(
-        tabulate_length(curve, background, most_edges, n_vertices, monitor));
+    const double most = curve.is_frozen ? most_frozen : most_edges;
+    tables.push_back(tabulate_length(curve, background, most, n_vertices, monitor));
     const double total = tables.back().total();
-    if (!(total < most_edges))
+    if (!curve.is_frozen && !(total < most))
       throw MeshingError("the metric asks for more than a billion edges on the curve "
                          "with tag " +
                              std::to_string(curve.tag) + ", which begins",
