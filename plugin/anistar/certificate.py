@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .core_errors import meshing_errors
 from .mesh import Mesh
 from .metric import check_metric
 from .metric.algebra import solved
@@ -178,7 +179,8 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
     if threads < 1:
         raise ValueError(f"threads must be at least 1, got {threads}")
     compiled = _core.certify2 if mesh.dim == 2 else _core.certify3
-    raw = compiled(mesh.points, mesh.cells, metric, mesh.facets, threads)
+    with meshing_errors():
+        raw = compiled(mesh.points, mesh.cells, metric, mesh.facets, threads)
     bits = raw["delaunay"][:, None] >> np.arange(mesh.dim + 1, dtype=np.uint8)
     flags = {name: raw[name].astype(bool) for name in ("simplex_ok", "star_ok", "exempt")}
     return Certificate(
@@ -245,7 +247,8 @@ def _fraction(ok: Bool) -> str:
 
 def _explained(mesh: Mesh, metric: Float, cell: int) -> SimplexOfStar:
     compiled = _core.delaunay_violator2 if mesh.dim == 2 else _core.delaunay_violator3
-    found = compiled(mesh.points, mesh.cells, mesh.facets, cell, metric)
+    with meshing_errors():
+        found = compiled(mesh.points, mesh.cells, mesh.facets, cell, metric)
     corners = mesh.points[mesh.cells[cell]]
     centre = circumcentre(corners, metric)
     return SimplexOfStar(

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .core_errors import meshing_errors
 from .demand import check_demand
-from .errors import MeshingError
 from .mesh import Mesh
 from .metric import check_metric
 from .options import require
@@ -77,7 +77,8 @@ def remesh(
     Raises
     ------
     MetricError
-        If a tensor is not symmetric positive definite; the point is named.
+        If a tensor is not symmetric positive definite, or asks for lengths out of the range of
+        double precision; the point is named.
     MeshingError
         If the facets of the geometry cross, the geometry is not the domain of `mesh`, a tag
         would be lost, the mesh has no room in memory (see `RemeshOptions`), or `project` does
@@ -97,7 +98,8 @@ def remesh(
     _check_frozen(options.frozen_tags, geometry)
     scale = _unit_scale(mesh.points)
     call = _call_core if mesh.dim == 2 else remesh_volume
-    metric /= scale * scale  # a copy, as check_metric returns it
+    with np.errstate(over="ignore", under="ignore"):
+        metric /= scale * scale  # a copy, as check_metric returns it
     check_sizes(mesh, metric, scale)
     check_demand(mesh, metric, scale, options)
     raw = call(mesh, metric, geometry, project, options, scale)
@@ -141,8 +143,8 @@ def _call_core(
     scale: float,
 ) -> dict[str, Any]:
     """Remesh in scaled coordinates, as the metric is already; what comes back is scaled."""
-    try:
-        return _core.remesh2(
+    with meshing_errors(scale):
+        raw: dict[str, Any] = _core.remesh2(
             mesh.points * scale,
             mesh.cells,
             metric,
@@ -158,9 +160,7 @@ def _call_core(
             None if project is None else pointwise(project, geometry, scale),
             options.callback,
         )
-    except _core.MeshingError as error:
-        message, x, y = error.args
-        raise MeshingError(f"{message} near ({x / scale:g}, {y / scale:g})") from None
+    return raw
 
 
 def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:

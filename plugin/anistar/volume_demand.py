@@ -10,7 +10,7 @@ from .metric import MetricError
 
 #: Edges relative to the extent of the mesh. The determinant of a metric is the sixth power of
 #: a length: beyond these, products of a few of them leave the range of double precision.
-SMALLEST_SIZE, LARGEST_SIZE = 1e-30, 1e40
+SMALLEST_SIZE, LARGEST_SIZE = 1e-30, 1e30
 
 
 def check_sizes(mesh: Mesh, metric: NDArray[np.float64], scale: float) -> None:
@@ -27,7 +27,7 @@ def check_sizes(mesh: Mesh, metric: NDArray[np.float64], scale: float) -> None:
     Raises
     ------
     MetricError
-        If the length of an edge along a coordinate axis is not in [1e-30, 1e40] times the
+        If the length of an edge along a coordinate axis is not in [1e-30, 1e30] times the
         extent of the mesh; the point is named.
     """
     extent = scale * float(np.ptp(mesh.points, axis=0).max())

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .core_errors import meshing_errors
 from .errors import MeshingError
 from .mesh import Mesh
 from .overlap import crossing_facets, doubled_cell, touching_point
@@ -66,25 +67,26 @@ def remesh_volume(
     """
     if options.until_consistent == "pure":
         raise ValueError('until_consistent="pure" exists in 2D only: use until_consistent=True')
-    raw: dict[str, Any] = _core.remesh3(
-        mesh.points * scale,
-        mesh.cells,
-        mesh.cell_tags,
-        mesh.facets,
-        mesh.facet_tags,
-        mesh.edges,
-        mesh.edge_tags,
-        mesh.corners,
-        metric,
-        geometry.points * scale,
-        geometry.facets,
-        geometry.facet_tags,
-        geometry.edges,
-        geometry.edge_tags,
-        np.array(options.frozen_tags, dtype=np.int32),
-        options.ridge_angle,
-        options.as_settings(),
-        None if project is None else pointwise(project, geometry, scale),
-        options.callback,
-    )
+    with meshing_errors(scale):
+        raw: dict[str, Any] = _core.remesh3(
+            mesh.points * scale,
+            mesh.cells,
+            mesh.cell_tags,
+            mesh.facets,
+            mesh.facet_tags,
+            mesh.edges,
+            mesh.edge_tags,
+            mesh.corners,
+            metric,
+            geometry.points * scale,
+            geometry.facets,
+            geometry.facet_tags,
+            geometry.edges,
+            geometry.edge_tags,
+            np.array(options.frozen_tags, dtype=np.int32),
+            options.ridge_angle,
+            options.as_settings(),
+            None if project is None else pointwise(project, geometry, scale),
+            options.callback,
+        )
     return raw

@@ -1,5 +1,7 @@
 #include "base/predicates.h"
 
+#include "base/range.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Gmpzf.h>
 
@@ -14,6 +16,10 @@ Orientation as_orientation(CGAL::Sign sign) {
 }
 
 Side as_side(CGAL::Sign sign) { return static_cast<Side>(static_cast<int>(sign)); }
+
+template <class... Numbers> void require_all_finite(const Numbers &...numbers) {
+  (require_finite(numbers), ...);
+}
 
 template <std::size_t d>
 std::array<Exact, d> exact_difference(const Vector<d> &x, const Vector<d> &p) {
@@ -58,12 +64,14 @@ namespace detail {
 
 Orientation exact_orientation(const Vector<2> &a, const Vector<2> &b,
                               const Vector<2> &c) {
+  require_all_finite(a, b, c);
   const auto point = [](const Vector<2> &x) { return Kernel::Point_2(x[0], x[1]); };
   return as_orientation(CGAL::orientation(point(a), point(b), point(c)));
 }
 
 Orientation exact_orientation(const Vector<3> &a, const Vector<3> &b,
                               const Vector<3> &c, const Vector<3> &e) {
+  require_all_finite(a, b, c, e);
   const auto point = [](const Vector<3> &x) {
     return Kernel::Point_3(x[0], x[1], x[2]);
   };
@@ -72,12 +80,14 @@ Orientation exact_orientation(const Vector<3> &a, const Vector<3> &b,
 
 Side exact_in_sphere(const SymmetricTensor<2> &M, const Vector<2> &a,
                      const Vector<2> &b, const Vector<2> &c, const Vector<2> &p) {
+  require_all_finite(M.entries, a, b, c, p);
   return as_side(CGAL::sign(exact_sphere_determinant(M, a, b, c, p)));
 }
 
 Side exact_in_sphere(const SymmetricTensor<3> &M, const Vector<3> &a,
                      const Vector<3> &b, const Vector<3> &c, const Vector<3> &e,
                      const Vector<3> &p) {
+  require_all_finite(M.entries, a, b, c, e, p);
   const auto u = exact_difference<3>(a, p), v = exact_difference<3>(b, p),
              w = exact_difference<3>(c, p), x = exact_difference<3>(e, p);
   const Exact det = determinant3(u, v, w) * exact_square<3>(M, x) -

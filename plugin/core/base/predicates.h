@@ -3,7 +3,8 @@
 //
 // A floating-point filter decides almost always; where its error bound does not
 // separate the value from zero, exact arithmetic does (Shewchuk, Adaptive precision
-// floating-point arithmetic, 1997, for the shape of the bounds).
+// floating-point arithmetic, 1997, for the shape of the bounds). No filter decides on
+// NaN, so that the exact arithmetic alone has to refuse it: std::domain_error.
 
 #include "base/tensor.h"
 

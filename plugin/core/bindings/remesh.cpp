@@ -61,6 +61,9 @@ void bind_remesh(nb::module_ &module) {
       const auto arguments =
           nb::make_tuple(error.what(), error.place()[0], error.place()[1]);
       PyErr_SetObject(error_type.ptr(), arguments.ptr());
+    } catch (const std::domain_error &error) { // of what was checked: a failure of ours
+      const auto arguments = nb::make_tuple(error.what());
+      PyErr_SetObject(error_type.ptr(), arguments.ptr());
     }
   });
   module.def(

@@ -1,5 +1,7 @@
 #include "certificate/circumball.h"
 
+#include "base/range.h"
+
 #include <CGAL/Mpzf.h>
 
 #include <algorithm>
@@ -68,6 +70,10 @@ template <std::size_t d, class Number> struct Frame {
 
 template <std::size_t d, class Number>
 std::array<Number, d> difference(const Vector<d> &x, const Vector<d> &origin) {
+  if constexpr (std::is_same_v<Number, Exact>) {
+    require_finite(x);
+    require_finite(origin);
+  }
   std::array<Number, d> out;
   for (std::size_t i = 0; i < d; ++i)
     out[i] = Number(x[static_cast<int>(i)]) - Number(origin[static_cast<int>(i)]);
@@ -129,6 +135,7 @@ template <std::size_t d> struct ExactBall {
 
   ExactBall(const SymmetricTensor<d> &metric, const Simplex<d> &s)
       : M(metric), simplex(s) {
+    require_finite(M.entries);
     const Frame<d, Exact> f = frame_of<d, Exact>(s);
     determinant = f.determinant;
     gradient.fill(Exact(0));

@@ -1,5 +1,7 @@
 #include "plane/start.h"
 
+#include "base/range.h"
+
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
@@ -28,10 +30,12 @@ using EdgeKey = std::pair<Index, Index>;
 
 Cdt insert_outline(const Outline &outline, const std::function<void()> &look) {
   std::vector<std::pair<Kernel::Point_2, Index>> points;
-  for (std::size_t v = 0; v < outline.vertices.size(); ++v)
+  for (std::size_t v = 0; v < outline.vertices.size(); ++v) {
+    require_finite(outline.vertices[v].x);
     points.emplace_back(
         Kernel::Point_2(outline.vertices[v].x[0], outline.vertices[v].x[1]),
         static_cast<Index>(v));
+  }
   Cdt cdt;
   cdt.insert(points.begin(), points.end());
   std::vector<Cdt::Vertex_handle> handle(points.size());
