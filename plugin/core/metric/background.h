@@ -2,10 +2,38 @@
 // The metric field that the input mesh carries.
 
 #include "base/parallel.h"
+#include "base/range.h"
 #include "mesh/measures.h"
 #include "search/locator.h"
 
 namespace anistar {
+
+/// The eigenvalues of an interpolated metric differ by at most e^32 = 7.9e13, a little
+/// less than those of a metric that is given may (1e14): interpolation adds nothing to
+/// the range of the logarithms, but round-off does, and the result must be a metric.
+inline constexpr double largest_range = 32;
+
+/// exp L, for logarithms L of eigenvalues no further apart than `largest_range`; else
+/// the smaller ones are raised.
+template <std::size_t d>
+[[nodiscard]] SymmetricTensor<d> definite_exp(const SymmetricTensor<d> &L) {
+  double trace = 0, squares = 0;
+  for (std::size_t i = 0; i < d; ++i)
+    trace += L(i, i);
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t j = 0; j < d; ++j) {
+      const double entry = L(i, j) - (i == j ? trace / double(d) : 0);
+      squares += entry * entry;
+    }
+  // the sum of (l_i - mean)^2 is at least half of the range squared
+  if (2 * squares <= largest_range * largest_range)
+    return exp<d>(L);
+  Spectrum<d> s = spectrum(L);
+  const double least = s.values.maxCoeff() - largest_range;
+  for (int k = 0; k < static_cast<int>(d); ++k)
+    s.values[k] = std::exp(std::max(s.values[k], least));
+  return compose<d>(s.values, s.vectors);
+}
 
 /// P1 interpolation of log M on the given mesh: positive definite everywhere, and a
 /// mean of sizes rather than of their inverse squares (Arsigny, Fillard, Pennec,
@@ -13,13 +41,14 @@ namespace anistar {
 /// point.
 template <std::size_t d> class Background {
 public:
-  /// @pre every metric is positive definite.
+  /// @pre every metric is positive definite in double precision.
+  /// @throws std::domain_error if one has no finite logarithm.
   Background(std::span<const Vector<d>> points, std::span<const Cell<d>> cells,
              std::span<const SymmetricTensor<d>> metric, int threads = 1)
       : locator_(points, cells, threads), logarithm_(metric.size()) {
     parallel_ranges(metric.size(), threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
-        logarithm_[v] = log<d>(metric[v]);
+        logarithm_[v] = finite_log(metric[v]);
     });
   }
 
@@ -32,7 +61,7 @@ public:
       L +=
           at.barycentric[i] * logarithm_[static_cast<std::size_t>(
                                   locator_.cells()[static_cast<std::size_t>(cell)][i])];
-    return exp<d>(L);
+    return definite_exp<d>(L);
   }
 
   [[nodiscard]] Vertex<d> vertex(const Vector<d> &x, Index &cell) const {
@@ -44,6 +73,14 @@ public:
 private:
   Locator<d> locator_;
   std::vector<SymmetricTensor<d>> logarithm_;
+
+  [[nodiscard]] static SymmetricTensor<d> finite_log(const SymmetricTensor<d> &M) {
+    const SymmetricTensor<d> L = log<d>(M);
+    for (const double entry : L.entries)
+      if (!std::isfinite(entry))
+        throw out_of_range("a metric has no finite logarithm", M.entries);
+    return L;
+  }
 };
 
 } // namespace anistar

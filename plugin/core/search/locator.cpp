@@ -1,6 +1,7 @@
 #include "search/locator.h"
 
 #include "base/predicates.h"
+#include "base/range.h"
 #include "mesh/hilbert.h"
 #include "search/nearest_on.h"
 
@@ -126,6 +127,10 @@ Location<d> Locator<d>::inside(const Vector<d> &x, Index cell) const {
     at.barycentric[i] = std::max(0., volume_determinant<d>(replaced));
     sum += at.barycentric[i];
   }
+  if (!(sum > 0)) { // the cell is flat in double precision
+    at.barycentric.fill(1);
+    sum = static_cast<double>(d + 1);
+  }
   for (double &b : at.barycentric)
     b /= sum;
   return at;
@@ -164,6 +169,8 @@ template <std::size_t d> Location<d> Locator<d>::nearest(const Vector<d> &x) con
 
 template <std::size_t d>
 Location<d> Locator<d>::locate(const Vector<d> &x, Index hint) const {
+  if (!is_in_range<d>(x)) // nothing is nearest to it, and its cell would be `none`
+    throw out_of_range("a point to locate is out of range", x);
   Index cell = hint == none ? none : walk(x, hint);
   if (cell == none)
     cell = containing(x);

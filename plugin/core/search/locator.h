@@ -30,6 +30,7 @@ public:
           int threads = 1);
 
   /// @param hint a cell at which the walk starts; `none` goes to the tree at once.
+  /// @throws std::domain_error if x is no place (see is_in_range).
   [[nodiscard]] Location<d> locate(const Vector<d> &x, Index hint) const;
 
   /// Locations of many points; consecutive ones should be near one another.

@@ -1,5 +1,6 @@
 #include "surface/smooth_surface.h"
 
+#include "base/range.h"
 #include "search/nearest_on.h"
 
 #include <algorithm>
@@ -142,6 +143,8 @@ CurvedPieces::Nearest CurvedPieces::on_piece(const Vector<3> &x, Index k) const 
 CurvedPieces::Nearest CurvedPieces::nearest(const Vector<3> &x, Index start,
                                             const FeatureSet &among) const {
   Nearest best;
+  if (!is_in_range<3>(x)) // nothing would be nearest to it
+    throw out_of_range("a point to put on a surface is out of range", x);
   if (start != none)
     best = on_piece(x, start);
   tree_.nearest(x, best.distance, [&](Index item, double) {

@@ -1,6 +1,7 @@
 #pragma once
 // Where new vertices of a surface or a ridge go.
 
+#include "base/range.h"
 #include "mesh/measures.h"
 #include "surface/surface_input.h"
 
@@ -46,12 +47,14 @@ public:
   [[nodiscard]] Vector<3> normal(Index p, const Vector<3> &x,
                                  const Vector<3> &like) const;
   [[nodiscard]] Vector<3> on_curve(Index c, const Vector<3> &x) const;
-  /// The place near x for a vertex on a feature of this dimension.
+  /// The place near x for a vertex on a feature of this dimension; x itself where it is
+  /// no place (see is_in_range).
   [[nodiscard]] Vector<3> place(Index dimension, Index lies_on,
                                 const Vector<3> &x) const {
-    return dimension == 2   ? on_patch(lies_on, x)
-           : dimension == 1 ? on_curve(lies_on, x)
-                            : x;
+    return !is_in_range<3>(x) ? x
+           : dimension == 2   ? on_patch(lies_on, x)
+           : dimension == 1   ? on_curve(lies_on, x)
+                              : x;
   }
   /// From the middle of the segment ab to the feature.
   [[nodiscard]] Vector<3> lift(Index dimension, Index lies_on, const Vector<3> &a,

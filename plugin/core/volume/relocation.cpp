@@ -120,6 +120,8 @@ double VolumeRelocation::length_penalty() const {
 bool VolumeRelocation::place(const Vector<3> &x, Index &background_cell) {
   const Index feature = volume_.feature(v_);
   const Vector<3> on = volume_.surface.place(feature, volume_.support_of(v_), x);
+  if (!is_in_range<3>(on))
+    return false;
   if (feature != Triangulation<3>::interior &&
       !keeps_surfaces(volume_, star_, v_, on, state_.hausdorff_number))
     return false;

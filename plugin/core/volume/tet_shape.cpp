@@ -36,16 +36,16 @@ void BallTests::evaluate(const SymmetricTensor<3> &M) {
 
 bool StarShapes::are_positive(const Vector<3> &p) const {
   const double x = p[0], y = p[1], z = p[2];
-  double least = std::numeric_limits<double>::infinity();
+  bool are_positive = true; // a minimum would pass over NaN
   for (std::size_t i = 0; i < n_; ++i) {
     const double ax = a_[0][i] - x, ay = a_[1][i] - y, az = a_[2][i] - z;
     const double bx = b_[0][i] - x, by = b_[1][i] - y, bz = b_[2][i] - z;
     const double cx = c_[0][i] - x, cy = c_[1][i] - y, cz = c_[2][i] - z;
     const double v =
         ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
-    least = std::min(least, v);
+    are_positive &= v > 0;
   }
-  return least > 0;
+  return are_positive;
 }
 
 void StarShapes::evaluate(const Vertex<3> &vertex) {

@@ -162,7 +162,7 @@ public:
     ++n_;
   }
   /// Whether all cells are positive, up to round-off, with the vertex at x: elsewhere
-  /// it needs no metric.
+  /// it needs no metric. Not where x is not finite.
   [[nodiscard]] bool are_positive(const Vector<3> &x) const;
   /// Qualities with the vertex at x.
   void evaluate(const Vertex<3> &x);

@@ -62,6 +62,8 @@ ScoredPoint VertexMover::best_place(Index v, int trials, CounterRandom &random) 
   const EllipseSampler<3> ellipse(here.M);
   ScoredPoint best;
   const auto consider = [&](const Vector<3> &x) {
+    if (!is_in_range<3>(x))
+      return;
     ScoredPoint found{{},
                       {},
                       star_.front(),
