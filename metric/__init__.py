@@ -4,7 +4,6 @@ A metric is an array (n, d, d) of symmetric positive definite tensors at the poi
 in 1 / length**2: an edge v should satisfy ``v^T M v = 1``.
 """
 
-from .algebra import absolute, exp_metric, interpolated, log_metric, sqrt_metric
 from .bounds import bounded
 from .checks import MetricError, check_metric
 from .combination import intersected, limited_step, mean
@@ -41,6 +40,7 @@ from .recovery import (
 )
 from .size_fields import size_in_box, size_near_boundary, size_near_points
 from .sizes import from_sizes
+from .tensor_functions import absolute, exp_metric, interpolated, log_metric, sqrt_metric
 from .tensor_orders import from_components, to_components
 
 __all__ = [

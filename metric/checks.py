@@ -7,12 +7,25 @@ import logging
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .algebra import compose, eigenvalues, eigh, lower_factor
+from .algebra import compose, eigenvalues, eigh
 
 logger = logging.getLogger(__name__)
 
 SYMMETRY_TOLERANCE = 1e-8
 """Largest asymmetry, relative to the largest entry, that is taken for round-off."""
+
+
+LARGEST_RATIO = 1e14
+"""Largest ratio of two eigenvalues of a metric: an anisotropy of 1e7.
+
+Rounding the entries of a tensor moves its eigenvalues by some 1e-16 of the largest one. At this
+ratio the smallest one keeps two digits, and its sign in every formula."""
+
+SMALLEST_ENTRY, LARGEST_ENTRY = 1e-60, 1e60
+"""Bounds of the largest entry of a metric.
+
+With the bound of the ratio its eigenvalues are in [1e-74, 1e60], so that products of four of them,
+of which determinants in 3D are made, stay in the range of doubles."""
 
 
 REPAIRS = ("raise", "floor")
@@ -44,9 +57,10 @@ def check_metric(
     name : str
         What to call the field in messages.
     repair : {"raise", "floor"}
-        What to do where a tensor is not positive definite. ``floor`` lifts its eigenvalues to
-        1e-12 times its largest one, or where none is positive to the smallest value that the
-        other points got, and logs a warning. What is not finite or not symmetric raises always.
+        What to do where a tensor is not positive definite, or its eigenvalues differ by more than
+        1e14. ``floor`` lifts them to 1e-12 times the largest one, or where none is positive to
+        the smallest value that the other points got, and logs a warning. What is not finite, not
+        symmetric or out of the range of [1e-60, 1e60] raises always.
 
     Returns
     -------
@@ -56,8 +70,9 @@ def check_metric(
     Raises
     ------
     MetricError
-        If the shape is wrong, or a tensor is not finite, not symmetric or not positive
-        definite; the first such point is named.
+        If the shape is wrong, or a tensor is not finite, not symmetric, not positive definite,
+        or not so in double precision: two eigenvalues differ by more than 1e14, or the largest
+        entry is not in [1e-60, 1e60]. The first such point is named.
     TypeError
         If the values are not real numbers.
     ValueError
@@ -65,12 +80,13 @@ def check_metric(
     """
     check_repair(repair)
     tensors = check_tensors(M, n_points=n_points, dim=dim, name=name)
-    bad = _not_definite(tensors)
+    _check_magnitude(tensors, name)
+    bad = _singular(tensors)
     if bad.size == 0:
         return tensors
     values, vectors = eigh(tensors)
     place = f"{name} at point {bad[0]}"
-    problem = f"not positive definite: smallest eigenvalue {values[bad[0], 0]:.1e}{_others(bad)}"
+    problem = f"{_what_is_wrong(values[bad[0]])}{_others(bad)}"
     if repair == "raise":
         raise MetricError(f"{place} is {problem}")
     floor = FLOOR_RATIO * values[:, -1:]
@@ -90,18 +106,16 @@ def check_repair(repair: str) -> None:
         raise ValueError(f"repair must be one of {', '.join(REPAIRS)}, got {repair!r}")
 
 
-def check_result(
-    M: NDArray[np.float64], operation: str, *, stays_definite: bool = False
-) -> NDArray[np.float64]:
+def check_result(M: NDArray[np.float64], operation: str) -> NDArray[np.float64]:
     """Return what an operation made of checked metrics, or raise naming it and the point.
 
-    Sizes below 1e-154 or above 1e154 overflow when they are squared, and tensors whose
-    eigenvalues differ by more than 1e16 are no longer definite in double precision.
+    An intersection of two metrics can have twice the ratio of theirs, and a mean of sizes, or
+    their scaling, can leave the range of doubles: what is returned passes `check_metric` again.
 
     Raises
     ------
     MetricError
-        If a tensor is not finite or not positive definite.
+        If a tensor is not finite or not positive definite in double precision.
     """
     bad = _not_finite(M.reshape(len(M), -1))
     if bad.size:
@@ -109,29 +123,43 @@ def check_result(
             f"{operation} gave a tensor that is not finite at point {bad[0]}: "
             f"{M[bad[0]].tolist()}{_others(bad)}"
         )
-    bad = np.empty(0, dtype=np.intp) if stays_definite else _not_definite(M)
+    _check_magnitude(M, f"the tensor that {operation} gave")
+    bad = _singular(M)
     if bad.size:
-        smallest = eigenvalues(M[bad[:1]])[0, 0]
+        problem = _what_is_wrong(eigenvalues(M[bad[:1]])[0])
         raise MetricError(
-            f"{operation} gave a tensor that is not positive definite at point "
-            f"{bad[0]}: smallest eigenvalue {smallest:.1e}{_others(bad)}"
+            f"the tensor that {operation} gave at point {bad[0]} is {problem}{_others(bad)}"
         )
     return M
 
 
-def _not_definite(tensors: NDArray[np.float64]) -> NDArray[np.intp]:
+def _check_magnitude(tensors: NDArray[np.float64], name: str) -> None:
+    """Raise MetricError where determinants would leave the range of doubles; zero passes."""
+    largest = np.abs(tensors).max(axis=(1, 2), initial=0.0)
+    bad = np.flatnonzero((largest > LARGEST_ENTRY) | ((largest > 0.0) & (largest < SMALLEST_ENTRY)))
+    if bad.size:
+        raise MetricError(
+            f"{name} at point {bad[0]} is out of range: its largest entry {largest[bad[0]]:.1e} is "
+            f"outside of [{SMALLEST_ENTRY:g}, {LARGEST_ENTRY:g}]{_others(bad)}"
+        )
+
+
+def _singular(tensors: NDArray[np.float64]) -> NDArray[np.intp]:
     """Points whose tensor is not positive definite in double precision."""
-    has_factor = (np.diagonal(lower_factor(tensors), axis1=1, axis2=2) > 0.0).all()
-    if tensors.shape[-1] == 3 and has_factor:
-        return np.empty(0, dtype=np.intp)  # without spectra
-    positive = (eigenvalues(tensors) > 0.0).all(axis=1)
-    pivots = np.array(tensors)
-    with np.errstate(all="ignore"):
-        for k in range(tensors.shape[-1]):
-            positive &= pivots[:, k, k] > 0.0
-            column = pivots[:, k + 1 :, k] / pivots[:, k, k, None]
-            pivots[:, k + 1 :, k + 1 :] -= column[:, :, None] * pivots[:, None, k, k + 1 :]
-    return np.flatnonzero(~positive)
+    values = eigenvalues(tensors)
+    smallest, largest = values[:, 0], values[:, -1]
+    return np.flatnonzero(~((smallest > 0.0) & (largest <= LARGEST_RATIO * smallest)))
+
+
+def _what_is_wrong(values: NDArray[np.float64]) -> str:
+    """Say why a tensor with these increasing eigenvalues (d,) is no metric."""
+    smallest, largest = values[0], values[-1]
+    if not smallest > 0.0:
+        return f"not positive definite: smallest eigenvalue {smallest:.1e}"
+    return (
+        f"singular in double precision: eigenvalues {smallest:.1e} and {largest:.1e}, "
+        f"a ratio of {largest / smallest:.1e} beyond {LARGEST_RATIO:.0e}"
+    )
 
 
 def _not_finite(rows: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -51,9 +51,7 @@ def intersected(M: Array, *others: Array, rule: str = "pairwise") -> Array:
        and Design 46, 2010, section 3.2.
     """
     check_rule(rule)
-    result = intersection_of(_checked([M, *others]), rule)
-    # what an intersection adds is semidefinite
-    return check_result(result, "the intersection", stays_definite=True)
+    return check_result(intersection_of(_checked([M, *others]), rule), "the intersection")
 
 
 def intersection_of(metrics: Sequence[Array], rule: str) -> Array:

@@ -21,8 +21,10 @@ Array = NDArray[np.float64]
 FLOOR_STEPS = 8
 """Fixed-point steps for the floor; each gains about a digit, and two are enough."""
 
-SMALLEST_FLOOR = 1e-14
-"""Floor of the eigenvalues relative to the largest one: below, determinants are round-off."""
+SMALLEST_FLOOR = 2e-14
+"""Floor of the eigenvalues relative to the largest one: below, determinants are round-off.
+
+The metrics that are made of it stay within the ratio of `check_metric` with a margin."""
 
 ERROR_STEPS = 20
 """Steps towards a target error; the first is exact where no floor acts."""

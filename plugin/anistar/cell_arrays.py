@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from .certificate import Certificate
 from .fields import Field
 from .mesh import Mesh
+from .metric import check_metric
 from .metric.algebra import congruent, eigenvalues, lower_factor
 from .quality import mean_ratios, metric_lengths
 
@@ -33,7 +34,13 @@ def cell_arrays(mesh: Mesh, M: Float, certificate: Certificate | None = None) ->
         ``longest_edge``, the length in the metric; ``quality``, the mean ratio; ``distortion``,
         the largest between two vertices of the cell, at least 1; and with a certificate
         ``inconsistent``, 0 where the cell is certified and 1 where it is not.
+
+    Raises
+    ------
+    MetricError
+        If a tensor is not symmetric positive definite; the point is named.
     """
+    M = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     pairs = list(itertools.combinations(range(mesh.dim + 1), 2))
     edges = mesh.cells[:, pairs].reshape(-1, 2)
     shape = (mesh.n_cells, len(pairs))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .mesh import Mesh
+from .metric import check_metric
 from .metric.algebra import determinant
 from .metric.kernels.elementary import log, power
 from .report import attributes
@@ -67,9 +68,16 @@ def quality(mesh: Mesh, M: Floats | None = None) -> Quality:
     mesh : Mesh
     M : (n, d, d) float64, optional
         Metric at the points; the identity by default.
+
+    Raises
+    ------
+    MetricError
+        If a tensor is not symmetric positive definite; the point is named.
     """
     is_given = M is not None
-    if M is None:
+    if M is not None:
+        M = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
+    else:
         M = np.broadcast_to(np.eye(mesh.dim), (mesh.n_points, mesh.dim, mesh.dim))
     edges = unique_edges(mesh.cells, mesh.n_points)
     lengths, ratios = metric_lengths(mesh, M, edges), mean_ratios(mesh, M)

@@ -16,7 +16,7 @@ from .demand import check_targets
 from .errors import MeshingError
 from .fields import Field, as_fields
 from .mesh import Mesh
-from .metric import from_fields
+from .metric import check_metric, from_fields
 from .metric.scaling import Scale, scale_of
 from .options import require
 from .projection import Project
@@ -146,7 +146,13 @@ def needs_adaptation(
         Smallest share of edges with a length in [1/sqrt(2), sqrt(2)].
     longest_edge : float
         Largest length in the metric.
+
+    Raises
+    ------
+    MetricError
+        If a tensor is not symmetric positive definite; the point is named.
     """
+    M = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     lengths = metric_lengths(mesh, M, unique_edges(mesh.cells, mesh.n_points))
     is_unit = (lengths >= UNIT[0]) & (lengths <= UNIT[1])
     return bool(is_unit.mean() < unit_edges or lengths.max() > longest_edge)
