@@ -29,7 +29,10 @@ bool CavityOperator::propose(std::span<const Index> cells, Index apex,
     return false;
   if (!match() || (has_walls_ && (!constrain() || !separates_regions())))
     return false;
-  if (!surface_.empty() && !(keeps_link() && keeps_surface_links(cells)))
+  if ((!surface_.empty() || volume_.fans_of(apex_)) &&
+      !(keeps_link() && keeps_surface_links(cells)))
+    return false;
+  if (!volume_.fans.empty() && !keeps_bodies_apart(cells))
     return false;
   if (volume_.slab && !stays_in_slab(cells)) {
     volume_.is_put_off = true;
@@ -290,6 +293,27 @@ void CavityOperator::commit(std::span<const Index> cells) {
   for (std::size_t k = used; k < cells.size(); ++k)
     volume_.free_cell(cells[k]);
   join_pairs();
+  if (!volume_.fans.empty())
+    update_fans(cells);
+}
+
+void CavityOperator::update_fans(std::span<const Index> cells) {
+  const auto is_old = [&](Index c) {
+    return std::find(cells.begin(), cells.end(), c) != cells.end();
+  };
+  const auto update = [&](Index v) {
+    std::vector<Index> *fans = volume_.fans_of(v);
+    if (!fans)
+      return;
+    std::erase_if(*fans, is_old);
+    for (const Outer &outer : outers_)
+      if (outer.kind == Kind::base &&
+          (v == apex_ || std::find(outer.v.begin(), outer.v.end(), v) != outer.v.end()))
+        fans->push_back(outer.cell);
+  };
+  update(apex_);
+  for (Index v : local_)
+    update(v);
 }
 
 void CavityOperator::join_pairs() {

@@ -136,6 +136,8 @@ private:
   [[nodiscard]] bool constrain();
   [[nodiscard]] bool separates_regions() const;
   [[nodiscard]] bool keeps_link();
+  [[nodiscard]] bool keeps_facets_apart() const;
+  [[nodiscard]] bool keeps_bodies_apart(std::span<const Index> cells) const;
   [[nodiscard]] bool keeps_surface_links(std::span<const Index> cells);
   [[nodiscard]] bool is_ridge(Index u, Index v) const;
   [[nodiscard]] bool is_new_ridge(Index v) const;
@@ -150,6 +152,7 @@ private:
   }
   [[nodiscard]] bool stays_in_slab(std::span<const Index> cells) const;
   void join_pairs();
+  void update_fans(std::span<const Index> cells);
 };
 
 template <class Visit> void CavityOperator::for_new_cells(Visit visit) const {

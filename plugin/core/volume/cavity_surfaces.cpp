@@ -2,6 +2,8 @@
 
 #include "volume/cavity_operator.h"
 
+#include "volume/cones.h"
+
 namespace anistar {
 namespace {
 
@@ -104,6 +106,7 @@ bool CavityOperator::keeps_shape(std::span<const Index> cells) const {
 
 /// Where surfaces are curved their sheets may come together: a new edge at the apex
 /// must not be there already, on cells outside of the cavity (the link condition).
+/// Where bodies touch in the apex these are the cells of all of them.
 bool CavityOperator::keeps_link() {
   const Triangulation<3> &mesh = volume_.mesh;
   const auto local = [&](Index v) {
@@ -120,6 +123,11 @@ bool CavityOperator::keeps_link() {
     if (outer.beyond.exists() && volume_.mark_cell(outer.beyond.cell()))
       around_.push_back(outer.beyond.cell());
   }
+  const std::vector<Index> *fans = volume_.fans_of(apex_);
+  if (fans)
+    for (Index c : *fans)
+      if (volume_.mark_cell(c))
+        around_.push_back(c);
   for (std::size_t k = 0; k < around_.size(); ++k) {
     const Cell<3> &cell = mesh.at(around_[k]);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -132,7 +140,48 @@ bool CavityOperator::keeps_link() {
         around_.push_back(beyond.cell());
     }
   }
+  return !fans || keeps_facets_apart();
+}
+
+/// Bodies that touch along two edges must not get the facet between these.
+bool CavityOperator::keeps_facets_apart() const {
+  for (const Pair &pair : pairs_) {
+    const Outer &one = outers_[static_cast<std::size_t>(pair.one.outer)],
+                &other = outers_[static_cast<std::size_t>(pair.other.outer)];
+    if (one.kind == Kind::at_apex || other.kind == Kind::at_apex)
+      continue; // it stays
+    const Index u = one.v[(pair.one.slot + 1) % 3], w = one.v[(pair.one.slot + 2) % 3];
+    for (Index c : around_) {
+      const Cell<3> &cell = volume_.mesh.at(c);
+      if (std::find(cell.begin(), cell.end(), u) != cell.end() &&
+          std::find(cell.begin(), cell.end(), w) != cell.end())
+        return false;
+    }
+  }
   return true;
+}
+
+/// Where a curved surface is replaced the new cells at a vertex where bodies touch
+/// might lie in the other bodies.
+bool CavityOperator::keeps_bodies_apart(std::span<const Index> cells) const {
+  if (std::all_of(surface_.begin(), surface_.end(), [&](const SurfaceEdge &edge) {
+        return volume_.surface.patch(edge.patch).is_planar;
+      }))
+    return true;
+  const auto keeps_at = [&](Index v) {
+    if (!volume_.fans_of(v))
+      return true;
+    for (const Outer &outer : outers_) {
+      const auto &t = outer.v;
+      const bool is_at = v == apex_ || std::find(t.begin(), t.end(), v) != t.end();
+      if (outer.kind == Kind::base && is_at &&
+          !is_apart_from_fans(
+              volume_, v, cone_at(volume_.mesh, {t[0], t[1], t[2], apex_}, v), cells))
+        return false;
+    }
+    return true;
+  };
+  return keeps_at(apex_) && std::all_of(local_.begin(), local_.end(), keeps_at);
 }
 
 /// Surfaces must not come together either: two sheets meet at an edge of the apex that

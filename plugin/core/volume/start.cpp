@@ -104,9 +104,10 @@ void add_cells(Volume &volume, const VolumeInput &input,
 
 /// Where bodies only touch, in an edge or a vertex, the cells around it are not joined
 /// by facets: an operation would see one side of it alone. Such places stay as they
-/// are.
+/// are, and the cells around them are kept in a list.
 void freeze_touching(Volume &volume) {
   Triangulation<3> &mesh = volume.mesh;
+  std::vector<Index> touching;
   std::vector<std::uint8_t> n_facets(volume.ridges.edges().size(), 0);
   std::vector<Index> n_cells(mesh.vertices.size(), 0);
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
@@ -118,8 +119,10 @@ void freeze_touching(Volume &volume) {
       const Facet<3> t = mesh.facet(h);
       for (std::size_t k = 0; k < 3; ++k) {
         const Index edge = volume.ridges.find(t[k], t[(k + 1) % 3]);
-        if (edge != none && ++n_facets[static_cast<std::size_t>(edge)] > 2)
-          volume.surface.freeze(volume.ridges.at(edge).curve);
+        if (edge == none || ++n_facets[static_cast<std::size_t>(edge)] <= 2)
+          continue;
+        volume.surface.freeze(volume.ridges.at(edge).curve);
+        touching.insert(touching.end(), {t[k], t[(k + 1) % 3]});
       }
     }
   for (const RidgeEdge &edge : volume.ridges.edges())
@@ -131,9 +134,12 @@ void freeze_touching(Volume &volume) {
     if (mesh.feature[v] == 3 || mesh.vertex_cell[v] == none)
       continue;
     star_of(volume, static_cast<Index>(v), star);
-    if (star.size() != static_cast<std::size_t>(n_cells[v]))
-      mesh.feature[v] = Triangulation<3>::corner;
+    if (star.size() == static_cast<std::size_t>(n_cells[v]))
+      continue;
+    mesh.feature[v] = Triangulation<3>::corner;
+    touching.push_back(static_cast<Index>(v));
   }
+  gather_fans(volume, touching);
 }
 
 } // namespace

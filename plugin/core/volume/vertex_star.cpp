@@ -1,8 +1,30 @@
 #include "volume/vertex_star.h"
 
 #include "volume/cavity_operator.h"
+#include "volume/cones.h"
 
 namespace anistar {
+namespace {
+
+/// Whether the cells of a star stay out of the bodies that they touch in a vertex when
+/// v goes to x.
+bool keeps_bodies_apart(const Volume &volume, std::span<const Index> star, Index v,
+                        const Vector<3> &x) {
+  for (Index c : star)
+    for (Index u : volume.mesh.at(c)) {
+      if (u == v || !volume.fans_of(u))
+        continue;
+      Cone cone = cone_at(volume.mesh, volume.mesh.at(c), u);
+      for (std::size_t k = 0; k < 3; ++k)
+        if (cone.vertices[k] == v)
+          cone.corners[k] = x;
+      if (!is_apart_from_fans(volume, u, cone, star))
+        return false;
+    }
+  return true;
+}
+
+} // namespace
 
 bool keeps_surfaces(const Volume &volume, std::span<const Index> star, Index v,
                     const Vector<3> &x, double hausdorff_number) {
@@ -54,7 +76,9 @@ bool keeps_surfaces(const Volume &volume, std::span<const Index> star, Index v,
             return false;
     }
   }
-  return true;
+  return volume.fans.empty() ||
+         volume.surface.is_flat(volume.feature(v), volume.support_of(v)) ||
+         keeps_bodies_apart(volume, star, v, x);
 }
 
 bool has_ridge(const Volume &volume, const Cell<3> &cell) {

@@ -212,6 +212,19 @@ void take_along(std::vector<T> &values, const std::vector<Index> &rank, std::siz
 
 } // namespace
 
+void gather_fans(Volume &volume, std::span<const Index> touching) {
+  volume.fans.clear();
+  for (Index v : touching)
+    volume.fans[v];
+  if (touching.empty())
+    return;
+  for (std::size_t c = 0; c < volume.mesh.cells.size(); ++c)
+    if (volume.mesh.is_alive(static_cast<Index>(c)))
+      for (Index v : volume.mesh.cells[c])
+        if (std::vector<Index> *cells = volume.fans_of(v))
+          cells->push_back(static_cast<Index>(c));
+}
+
 void renumber(Volume &volume, int threads) {
   Triangulation<3> &mesh = volume.mesh;
   const std::vector<Index> rank = sort_along_curve<3>(mesh, threads);
@@ -219,6 +232,10 @@ void renumber(Volume &volume, int threads) {
   take_along(volume.support, rank, n);
   take_along(volume.vertex_clock, rank, n);
   volume.ridges.renumber(rank, n);
+  std::vector<Index> touching;
+  for (const auto &[v, cells] : volume.fans)
+    touching.push_back(rank[static_cast<std::size_t>(v)]);
+  gather_fans(volume, touching);
   volume.free_vertices.clear();
   const std::size_t n_cells = mesh.cells.size();
   volume.quality.resize(n_cells);

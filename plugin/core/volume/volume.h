@@ -12,6 +12,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <unordered_map>
 
 namespace anistar {
 
@@ -26,6 +27,9 @@ struct VolumeState {
   /// When a cell, or a cell at a vertex, last changed, in passes.
   std::vector<std::uint32_t> cell_clock, vertex_clock;
   Slabs slabs;
+  /// All cells at the vertices where bodies only touch: they are not joined by facets,
+  /// so that a walk sees some of them alone.
+  std::unordered_map<Index, std::vector<Index>> fans;
 };
 
 /// The same with what its facets and edges lie on, and its metric.
@@ -61,6 +65,7 @@ struct Volume {
   std::vector<std::uint32_t> &cell_clock = data->cell_clock;
   std::vector<std::uint32_t> &vertex_clock = data->vertex_clock;
   std::uint32_t &clock = data->clock;
+  std::unordered_map<Index, std::vector<Index>> &fans = data->fans;
   std::vector<Index> free_vertices;
 
   std::optional<Slab> slab;      ///< none: no bound
@@ -93,6 +98,11 @@ struct Volume {
   void free_cell(Index c);
   void measure_cell(Index c);
   void touch(Index c);
+  /// All cells at a vertex where bodies touch; null elsewhere.
+  [[nodiscard]] std::vector<Index> *fans_of(Index v) const {
+    const auto found = fans.find(v);
+    return found == fans.end() ? nullptr : &found->second;
+  }
 
   /// Marks cells and vertices for one search.
   void open_cells() { next_epoch(cell_epoch_, cell_stamp_, mesh.cells.size()); }
@@ -170,6 +180,9 @@ struct EdgeWalls {
                                                           Index cell, Index a, Index b,
                                                           std::size_t longest_ring,
                                                           Shell &shell);
+
+/// Finds all cells at the vertices where bodies touch.
+void gather_fans(Volume &volume, std::span<const Index> touching);
 
 /// Renumbers along a Hilbert curve, and cuts into slabs.
 void renumber(Volume &volume, int threads = 1);
