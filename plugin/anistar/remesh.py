@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .contact import check_curves
 from .core_errors import meshing_errors
 from .demand import check_demand
 from .mesh import Mesh
@@ -119,7 +120,9 @@ def remesh(
         **ridges,
     )
     report = report_of(raw, geometry, new, has_ridges=len(mesh.edges) > 0)
-    if mesh.dim == 3 and report.counts["curved"]:
+    if mesh.dim == 2:
+        check_curves(new, report)
+    elif report.counts["curved"]:
         check_surfaces(new, report)
     return Remeshed(new, metric, report)
 
