@@ -27,8 +27,8 @@ def domain(rng):
     """Return one random domain of one random kind."""
     kind = rng.choice(list(KINDS), p=np.array(list(WEIGHTS)) / sum(WEIGHTS))
     points, cells, tags = KINDS[kind](rng)
-    points, cells, tags = _positive(points, cells, tags)
-    tags, facets, facet_tags = _constraints(rng, points, cells, tags)
+    points, cells, tags = positive(points, cells, tags)
+    tags, facets, facet_tags = constraints(rng, points, cells, tags)
     corners = rng.choice(len(points), rng.integers(0, 4)) if rng.random() < 0.4 else []
     mesh = Mesh(
         points=_placed(rng, points),
@@ -42,12 +42,12 @@ def domain(rng):
     return Domain(mesh, str(kind))
 
 
-def _positive(points, cells, tags):
-    """Turn cells counter-clockwise and drop those without area to speak of."""
+def positive(points, cells, tags, *, smallest=1e-9):
+    """Turn cells counter-clockwise and drop those whose area is nothing beside the largest."""
     a, b, c = (points[cells[:, i]] for i in range(3))
     area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     cells = np.where((area < 0)[:, None], cells[:, [0, 2, 1]], cells)
-    keep = np.abs(area) > 1e-9 * np.abs(area).max()
+    keep = np.abs(area) > smallest * np.abs(area).max()
     points, cells = compacted(points, cells[keep])
     return points, cells, tags[keep]
 
@@ -234,7 +234,7 @@ KINDS = {
 WEIGHTS = (8, 2, 2, 2, 2, 2, 2)
 
 
-def _constraints(rng, points, cells, tags):
+def constraints(rng, points, cells, tags):
     """Return region tags, facets and facet tags: boundary tags by chance, interfaces, slits."""
     table = facet_table(cells, len(points))
     boundary = table.facets[table.counts == 1]

@@ -1,7 +1,7 @@
 """A bounded run of the fuzz; ``run.py`` is the long one."""
 
 import pytest
-from run import outcomes
+from fuzz_workers import outcomes
 
 N_CASES = 120
 

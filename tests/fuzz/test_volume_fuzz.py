@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from run import outcomes
+from fuzz_workers import outcomes
 from volume_cases import make_volume_case, run_volume_case
 from volume_metrics import volume_metric
 

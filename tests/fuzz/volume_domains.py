@@ -21,10 +21,10 @@ def volume_domain(rng):
     """Return one random 3D domain of one random kind."""
     kind = str(rng.choice(list(KINDS)))
     points, cells = KINDS[kind](rng)
-    points, cells = _positive(points, cells)
-    tags = _regions(rng, kind, points, cells)
-    facets, facet_tags = _facets(rng, points, cells, tags)
-    edges = _lines(rng, points, cells) if rng.random() < 0.3 else np.zeros((0, 2), int)
+    points, cells = positive(points, cells)
+    tags = regions(rng, kind, points, cells)
+    facets, facet_tags = tagged_facets(rng, points, cells, tags)
+    edges = lines(rng, points, cells) if rng.random() < 0.3 else np.zeros((0, 2), int)
     corners = rng.choice(len(points), rng.integers(0, 4)) if rng.random() < 0.3 else []
     mesh = Mesh(
         points=_placed(rng, points),
@@ -61,11 +61,13 @@ def _volumes(points, cells):
     return np.linalg.det(points[cells[:, 1:]] - points[cells[:, :1]])
 
 
-def _positive(points, cells):
-    """Turn cells that are inverted and drop those without volume to speak of."""
+def positive(points, cells, tags=None, *, smallest=1e-9):
+    """Turn cells that are inverted and drop those whose volume is nothing beside the largest."""
     volumes = _volumes(points, cells)
     cells = np.where((volumes < 0)[:, None], cells[:, [0, 1, 3, 2]], cells)
-    return compacted(points, cells[np.abs(volumes) > 1e-9 * np.abs(volumes).max()])
+    kept = np.abs(volumes) > smallest * np.abs(volumes).max()
+    points, cells = compacted(points, cells[kept])
+    return (points, cells) if tags is None else (points, cells, tags[kept])
 
 
 def _jittered(rng, points, cells, by):
@@ -195,7 +197,7 @@ FLAT = ("cube", "plate", "voxels", "l-shape")
 """Kinds whose boundary is made of planes at right angles."""
 
 
-def _regions(rng, kind, points, cells):
+def regions(rng, kind, points, cells):
     middle = points[cells].mean(axis=1)
     if kind == "core" and rng.random() < 0.8:
         return np.where(np.linalg.norm(middle[:, :2], axis=1) < 0.5, 2, 1)
@@ -208,7 +210,7 @@ def _regions(rng, kind, points, cells):
     return np.ones(len(cells), int)
 
 
-def _facets(rng, points, cells, tags):
+def tagged_facets(rng, points, cells, tags):
     """Return facets and tags of the boundary, of interfaces and of embedded sheets."""
     table = facet_table(cells, len(points))
     outer, inner = table.counts == 1, np.flatnonzero(table.counts == 2)
@@ -239,7 +241,7 @@ def _facets(rng, points, cells, tags):
     return tuple(np.concatenate(column) for column in zip(*groups, strict=True))
 
 
-def _lines(rng, points, cells):
+def lines(rng, points, cells):
     """Return a walk along edges of cells."""
     here, walk = int(rng.integers(len(points))), []
     direction = rng.normal(size=3)

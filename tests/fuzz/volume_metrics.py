@@ -21,7 +21,7 @@ def volume_metric(rng, mesh, *, largest=1000.0):
     return kind, 0.5 * (M + M.transpose(0, 2, 1))
 
 
-def _turned(vectors):
+def turned(vectors):
     """Rotations by the vectors (Rodrigues' formula), (n, 3) -> (n, 3, 3)."""
     angle = np.linalg.norm(vectors, axis=1)
     k = vectors / np.maximum(angle, 1e-300)[:, None]
@@ -43,39 +43,39 @@ def _waves(rng, x, n, height):
 
 
 def _constant(rng, x):
-    frame = _turned(rng.normal(size=(1, 3)))
+    frame = turned(rng.normal(size=(1, 3)))
     sizes = -_ratio(rng) * rng.random(3)
     return np.repeat(frame, len(x), 0), np.tile(sizes, (len(x), 1))
 
 
 def _rotating(rng, x):
     sizes = np.tile([0, 0, -_ratio(rng)], (len(x), 1))
-    return _turned(_waves(rng, x, 3, rng.uniform(0, 4))), sizes
+    return turned(_waves(rng, x, 3, rng.uniform(0, 4))), sizes
 
 
 def _exchanging(rng, x):
     ratio = _ratio(rng)
     wave = 0.5 + 0.5 * _waves(rng, x, 1, 1.0)
     sizes = -ratio * np.concatenate([wave, 1 - wave, 0 * wave], axis=1)
-    return np.repeat(_turned(rng.normal(size=(1, 3))), len(x), 0), sizes
+    return np.repeat(turned(rng.normal(size=(1, 3))), len(x), 0), sizes
 
 
 def _smooth(rng, x):
     sizes = _waves(rng, x, 3, rng.uniform(0, 0.5 * _ratio(rng) + 0.1))
-    return _turned(_waves(rng, x, 3, rng.uniform(0, 3))), sizes
+    return turned(_waves(rng, x, 3, rng.uniform(0, 3))), sizes
 
 
 def _jump(rng, x):
     """One constant metric on each side of a plane."""
     side = (x @ rng.normal(size=3) > 0).astype(int)
-    frames = _turned(rng.normal(size=(2, 3)))
+    frames = turned(rng.normal(size=(2, 3)))
     sizes = -np.array([_ratio(rng), _ratio(rng)])[:, None] * rng.random((2, 3))
     return frames[side], sizes[side]
 
 
 def _rough(rng, x):
     n = len(x)
-    return _turned(rng.normal(size=(n, 3))), -_ratio(rng) * rng.random((n, 3))
+    return turned(rng.normal(size=(n, 3))), -_ratio(rng) * rng.random((n, 3))
 
 
 def _layer(rng, x):
