@@ -189,4 +189,4 @@ def _separates(facet: Float, p: Float, q: Float) -> Bool:
     rounding = 8 * np.finfo(float).eps * np.abs(facet).max(axis=(1, 2))
     turn = rounding * (longest if width == 3 else 1.0) * (far + longest)
     strict = np.minimum(np.abs(below), np.abs(above)) > CONTACT * reach + turn
-    return np.asarray(strict & (below * above < 0))
+    return np.asarray(strict & ((below < 0) != (above < 0)))
