@@ -4,6 +4,7 @@ import re
 import time
 import warnings
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from exact_judge import EPSILON, eigenvalue_ratios, mesh_problem
@@ -61,7 +62,8 @@ def run_harsh_case(case):
             _steps(case, found)
         except VerdictError as failure:
             found.verdict, found.message = failure.verdict, str(failure)
-    found.warned = str(caught[0].message) if caught else ""
+    if caught:
+        found.warned = f"{caught[0].message} in {Path(caught[0].filename).name}"
     return found
 
 
@@ -133,9 +135,11 @@ def _refusal(case, error):
     names_a_place = any(place in text for place in PLACES) or "memory" in text
     if not names_a_place or not re.search(r"\d", text):
         return VerdictError("unclear", f"names no place or no value: {text}")
-    if isinstance(error, MetricError) and case.ratio < 0.1 * REFUSED_ABOVE and not case.before:
+    is_held = case.ratio < 0.1 * REFUSED_ABOVE and "out of range" not in text
+    if isinstance(error, MetricError) and is_held and not case.before:
         return VerdictError("unfounded", f"the ratio is {case.ratio:.1e} only: {text}")
-    if "max_vertices" in text or "more than there may be" in text:
+    is_bounded = case.options.max_vertices is not None
+    if is_bounded and ("max_vertices" in text or "more than there may be" in text):
         return VerdictError("budget", text)
     return VerdictError("refused", text)
 

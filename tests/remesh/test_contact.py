@@ -12,7 +12,7 @@ from anistar.remesh import RemeshOptions, remesh
 
 
 def needle(thickness, far):
-    points = np.array([[0, 0], [13, thickness], [16, 0]]) + np.array([far, -far])
+    points = [[far, -far], [far + 13, thickness - far], [far + 16, -far]]
     return Mesh(points=points, cells=[[0, 2, 1]])
 
 
