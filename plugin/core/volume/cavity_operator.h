@@ -139,6 +139,7 @@ private:
   [[nodiscard]] bool keeps_facets_apart() const;
   [[nodiscard]] bool keeps_bodies_apart(std::span<const Index> cells) const;
   [[nodiscard]] bool keeps_surface_links(std::span<const Index> cells);
+  [[nodiscard]] int sheets_at_lost(Index v, std::span<const Index> cells) const;
   [[nodiscard]] bool is_ridge(Index u, Index v) const;
   [[nodiscard]] bool is_new_ridge(Index v) const;
   [[nodiscard]] Index local_index(Index v);

@@ -185,7 +185,8 @@ bool CavityOperator::keeps_bodies_apart(std::span<const Index> cells) const {
 }
 
 /// Surfaces must not come together either: two sheets meet at an edge of the apex that
-/// is no ridge, and as many as before at a ridge. Facets count twice, once per side.
+/// is no ridge, and as many as before at a ridge, or at the one whose place it takes.
+/// Facets count twice, once per side.
 /// @pre keeps_link has marked the cells around the apex.
 bool CavityOperator::keeps_surface_links(std::span<const Index> cells) {
   const Triangulation<3> &mesh = volume_.mesh;
@@ -220,8 +221,8 @@ bool CavityOperator::keeps_surface_links(std::span<const Index> cells) {
       count(after_, v, 2);
   for (std::size_t k = 0; k < local_.size(); ++k) {
     const Index v = local_[k];
-    if (after_[k] == before_[k] || (after_[k] == 4 && !is_ridge(apex_, v)) ||
-        is_new_ridge(v))
+    const int wanted = is_new_ridge(v) ? sheets_at_lost(v, cells) : 4;
+    if (after_[k] == before_[k] || (after_[k] == wanted && !is_ridge(apex_, v)))
       continue;
     if (after_[k] != 0 || is_ridge(apex_, v))
       return false;
@@ -232,6 +233,23 @@ bool CavityOperator::keeps_surface_links(std::span<const Index> cells) {
 bool CavityOperator::is_ridge(Index u, Index v) const {
   return volume_.feature(u) <= 1 && volume_.feature(v) <= 1 &&
          volume_.ridges.find(u, v) != none;
+}
+
+/// Facets of surfaces, counted once per side, at the edge of the cavity whose place the
+/// one from the apex to v takes.
+int CavityOperator::sheets_at_lost(Index v, std::span<const Index> cells) const {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const Index u = lost_[0], w = lost_[1] == none ? v : lost_[1];
+  int found = 0;
+  for (Index c : cells)
+    for (std::size_t i = 0; i < 4 && volume_.is_walled(c); ++i) {
+      const HalfFacet h(c, i);
+      const Facet<3> t = mesh.facet(h);
+      if (mesh.constraint(h) != none && std::find(t.begin(), t.end(), u) != t.end() &&
+          std::find(t.begin(), t.end(), w) != t.end())
+        found += mesh.opposite(h).exists() ? 1 : 2;
+    }
+  return found;
 }
 
 /// Whether the edge from the apex to v takes the place of one of a ridge.
