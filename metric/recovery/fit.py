@@ -330,7 +330,7 @@ def _basis(around: _Patches, cloud: Cloud, pairs: list[tuple[int, int]]) -> list
 def _weight(around: _Patches, cloud: Cloud) -> Array:
     if cloud.weights is not None:
         return np.asarray(cloud.weights[around.members])
-    distance = np.square(around.xi).sum(axis=0)
+    distance: Array = np.square(around.xi).sum(axis=0)
     if cloud.at_vertices is None:
         return np.asarray(1.0 / (1.0 + distance))
     # the vertex itself may be a member: its equation is 0 = 0 and must weigh nothing

@@ -61,7 +61,9 @@ def check_demand(mesh: Mesh, metric: Floats, scale: float, options: RemeshOption
     if fits(max(n_vertices, along), mesh.dim, options):
         return
     with np.errstate(over="ignore"):
-        n_vertices = vertices_for(complexity(mesh, metric) * scale**mesh.dim, mesh.dim)
+        n_vertices = vertices_for(
+            complexity(mesh, metric) * math.prod([scale] * mesh.dim), mesh.dim
+        )
     refuse(max(n_vertices, along), mesh.dim, options, "the metric")
 
 
@@ -98,7 +100,7 @@ def _densest(mesh: Mesh, h_min: Any) -> float:
     sizes = h_min(mesh.points) if callable(h_min) else h_min
     smallest = np.asarray(sizes, dtype=np.float64).min()
     with np.errstate(over="ignore"):
-        return float(cell_volumes(mesh.points, mesh.cells).sum() / smallest**mesh.dim)
+        return float(cell_volumes(mesh.points, mesh.cells).sum() / math.prod([smallest] * mesh.dim))
 
 
 def vertices_for(complexity: float, dim: int) -> float:
@@ -148,9 +150,12 @@ def _bounded(n_vertices: float, options: RemeshOptions) -> float:
 
 def _told(n_bytes: float) -> str:
     """Return a number of bytes as a person says it."""
-    units = ("kB", "MB", "GB", "TB", "PB")
-    power = min(max(math.floor(math.log10(min(max(n_bytes, 1.0), 1e300))) // 3, 1), len(units))
-    return f"{n_bytes / 1000.0**power:.3g} {units[power - 1]}"
+    told = n_bytes / 1000.0
+    for unit in ("kB", "MB", "GB", "TB"):
+        if told < 1000.0:
+            return f"{told:.3g} {unit}"
+        told /= 1000.0
+    return f"{told:.3g} PB"
 
 
 def _metric_measures(facets: NDArray[np.int32], points: Floats, metric: Floats) -> Floats:
@@ -164,6 +169,6 @@ def _metric_measures(facets: NDArray[np.int32], points: Floats, metric: Floats) 
     gram = np.einsum("kai,kij,kbj->kab", edges, M, edges)
     if points.shape[1] == 2:
         return np.asarray(np.sqrt(gram[:, 0, 0]))
-    square = gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2
+    square = gram[:, 0, 0] * gram[:, 1, 1] - np.square(gram[:, 0, 1])
     area = 0.5 * np.sqrt(np.maximum(square, 0.0))
     return np.asarray(vertices_for(1.0, 2) * area)

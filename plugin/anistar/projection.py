@@ -98,7 +98,7 @@ def pointwise(project: Project, geometry: Mesh, scale: float) -> Callable[..., t
 
 
 def _distance(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
-    return float(np.sqrt(((y - x) ** 2).sum()))
+    return float(np.sqrt(np.square(y - x).sum()))
 
 
 def _text(x: NDArray[np.float64]) -> str:

@@ -31,7 +31,7 @@ template <std::size_t d>
   Spectrum<d> s = spectrum(L);
   const double least = s.values.maxCoeff() - largest_range;
   for (int k = 0; k < static_cast<int>(d); ++k)
-    s.values[k] = std::exp(std::max(s.values[k], least));
+    s.values[k] = elementary::exp(std::max(s.values[k], least));
   return compose<d>(s.values, s.vectors);
 }
 
