@@ -5,8 +5,9 @@ import pytest
 from metric_meshes import box, from_arrays, is_at_least
 
 from anistar import metric
-from anistar.metric import growth, kernels
+from anistar.metric import growth
 from anistar.metric.graph import wide_graph
+from anistar.metric.kernels import compiled, gradation
 
 SQUARE = from_arrays(
     np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), np.array([[0, 1, 2], [0, 2, 3]])
@@ -52,13 +53,13 @@ def law(model, bound=np.inf):
     }
 
 
-@pytest.mark.parametrize("grade", [kernels.grade, growth.grade], ids=["compiled", "numpy"])
+@pytest.mark.parametrize("grade", [gradation.grade, growth.grade], ids=["compiled", "numpy"])
 @pytest.mark.parametrize("rows", [NOT_A_NUMBER, ENDLESS], ids=["not a number", "endless"])
 @pytest.mark.parametrize(
     ("model", "bound"), [("physical", np.inf), ("metric", 0.5), ("mixed", 1.0), ("none", 0.4)]
 )
 def test_a_gradation_ends_with_numbers_where_tensors_are_singular(grade, rows, model, bound):
-    assert kernels.core is not None, "the compiled core is not built"
+    assert compiled.core is not None, "the compiled core is not built"
     M = tensors(rows)
     with np.errstate(all="ignore"):
         done = grade(SQUARE.points, M, wide_graph(SQUARE), **law(model, bound))

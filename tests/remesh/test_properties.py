@@ -73,7 +73,7 @@ def test_a_rigid_motion_changes_the_result_little(make, angle):
     moved = changed(mesh, points=rotated_by(turn, mesh.points) + np.array([3.0, -7.0]))
     turned = np.einsum("ij,njk,lk->nil", turn, M, turn)
     turned = 0.5 * (turned + turned.transpose(0, 2, 1))
-    np.testing.assert_allclose(medians(moved, turned), medians(mesh, M), rtol=0.01)
+    np.testing.assert_allclose(medians(moved, turned), medians(mesh, M), rtol=0.02)
 
 
 @pytest.mark.parametrize("make", [arc_metric, rotating_metric])

@@ -1,6 +1,7 @@
 """The agreement phase of volumes: certified cells, nothing lost, refused where hopeless."""
 
 import functools
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -55,14 +56,16 @@ def test_every_cell_is_certified_on_a_smooth_metric():
 
 def test_the_cells_that_agreement_leaves_are_mended():
     mesh = cube(7)
-    done = remesh(mesh, linear(mesh, thin=0.025, growth=0.2), AGREE)
-    counts = done.report.counts
+    counts = Counter()
+    for thin in (0.022, 0.024, 0.026, 0.028):  # which of them leave some is chaotic
+        done = remesh(mesh, linear(mesh, thin=thin, growth=0.2), AGREE)
+        counts += Counter(done.report.counts)
+        assert done.report.simplex_ok == done.report.star_ok == 1.0
+        assert anistar.certify(done.mesh, done.metric).simplex_ok.all()
+        assert done.report.statistics["q_min"] > 0.4
+        assert validate(done.mesh, reference=mesh, tolerance=1e-12) == []
     assert counts["star_failures"] > 0
     assert counts["star_moves"] > 0
-    assert done.report.simplex_ok == done.report.star_ok == 1.0
-    assert anistar.certify(done.mesh, done.metric).simplex_ok.all()
-    assert done.report.statistics["q_min"] > 0.4
-    assert validate(done.mesh, reference=mesh, tolerance=1e-12) == []
 
 
 def test_quality_lengths_and_the_number_of_vertices_are_kept():

@@ -184,10 +184,24 @@ template <std::size_t d, class Function>
   return compose<d>(s.values, s.vectors);
 }
 
+/// f(M), for a function of a pair of numbers.
+template <std::size_t d, class Function>
+[[nodiscard]] inline SymmetricTensor<d> elementary_function(const SymmetricTensor<d> &M,
+                                                            Function f) {
+  Spectrum<d> s = spectrum(M);
+  const elementary::Pair ends = f(elementary::Pair(s.values[0], s.values[d - 1]));
+  if constexpr (d == 3)
+    s.values[1] = f(elementary::Pair::Constant(s.values[1]))[0];
+  s.values[0] = ends[0];
+  s.values[d - 1] = ends[1];
+  return compose<d>(s.values, s.vectors);
+}
+
 /// @pre M is positive definite.
 template <std::size_t d>
 [[nodiscard]] inline SymmetricTensor<d> log(const SymmetricTensor<d> &M) {
-  return matrix_function(M, [](double x) { return elementary::log(x); });
+  return elementary_function(
+      M, [](const elementary::Pair &x) { return elementary::log(x); });
 }
 
 namespace detail {
@@ -269,7 +283,8 @@ template <std::size_t d>
       return out;
     }
   }
-  return matrix_function(L, [](double x) { return elementary::exp(x); });
+  return elementary_function(
+      L, [](const elementary::Pair &x) { return elementary::exp(x); });
 }
 
 /// The lower triangular L with L L^T = M.

@@ -10,6 +10,14 @@ constexpr double shortest_kept = .64, longest_kept = 1.5;
 constexpr double longest_kept_at_end = 2;
 /// |ln l| up to here is free: a little inside the bounds of a unit edge.
 const double unit_excess = elementary::log(longest_unit) - .03;
+/// Lengths up to here, and from its inverse on, are: most are, and need no logarithm.
+constexpr double surely_free = 1.37;
+
+double excess(double length) {
+  if (length < surely_free && length * surely_free > 1)
+    return 0;
+  return std::max(0., std::abs(elementary::log(length)) - unit_excess);
+}
 
 } // namespace
 
@@ -46,7 +54,7 @@ StarScore Relocation::score() const {
     out.longest_at_end = std::max({out.longest_at_end, lv, lu});
     out.shortest = std::min(out.shortest, l);
     out.longest = std::max(out.longest, l);
-    out.excess += std::max(0., std::abs(elementary::log(l)) - unit_excess);
+    out.excess += excess(l);
   };
   for (HalfFacet h : star_) {
     const auto [a, b] = mesh_.facet(h);
