@@ -140,17 +140,24 @@ bool CavityOperator::keeps_link() {
         around_.push_back(beyond.cell());
     }
   }
-  return !fans || keeps_facets_apart();
+  return keeps_facets_apart();
 }
 
-/// Bodies that touch along two edges must not get the facet between these.
+/// Nor a new facet at the apex: bodies that touch along two edges must not get the one
+/// between these, and a gap between two sheets that share them must not be closed.
+/// @pre keeps_link has found the vertices that keep their edge to the apex.
 bool CavityOperator::keeps_facets_apart() const {
+  const auto is_joined = [&](Index v) {
+    return joined_[static_cast<std::size_t>(local_of_[static_cast<std::size_t>(v)])];
+  };
   for (const Pair &pair : pairs_) {
     const Outer &one = outers_[static_cast<std::size_t>(pair.one.outer)],
                 &other = outers_[static_cast<std::size_t>(pair.other.outer)];
     if (one.kind == Kind::at_apex || other.kind == Kind::at_apex)
       continue; // it stays
     const Index u = one.v[(pair.one.slot + 1) % 3], w = one.v[(pair.one.slot + 2) % 3];
+    if (!is_joined(u) || !is_joined(w))
+      continue; // one of its edges is new
     for (Index c : around_) {
       const Cell<3> &cell = volume_.mesh.at(c);
       if (std::find(cell.begin(), cell.end(), u) != cell.end() &&
