@@ -178,6 +178,15 @@ def test_a_metric_beyond_any_memory_is_an_error_at_once():
     assert done.report.stop_reason == "max_vertices"
 
 
+def test_a_mesh_above_the_bound_is_not_converged_though_nothing_is_to_be_split():
+    mesh = cube(1)
+    done = remesh(mesh, uniform(mesh, 5.0), RemeshOptions(max_vertices=3))
+    assert validate(done.mesh) == []
+    assert done.mesh.n_points > 3
+    assert not done.report.converged
+    assert done.report.stop_reason == "max_vertices"
+
+
 @pytest.mark.parametrize("aspect", [1e4, 1e6])
 @pytest.mark.parametrize("turn", [lambda mesh: mesh, rotated], ids=["along the axes", "turned"])
 def test_a_huge_aspect_ratio_within_a_budget_gives_a_valid_mesh(aspect, turn):

@@ -307,7 +307,9 @@ VolumeResult remesh_volume(const VolumeInput &input,
     watch.phase("report");
     take_mesh(volume, out);
     take_counts(passes.counts(), out);
-    out.reason = passes.is_full() ? StopReason::max_vertices : monitor.reason();
+    const bool is_over =
+        passes.is_full() || out.vertices.size() > settings.max_vertices;
+    out.reason = is_over ? StopReason::max_vertices : monitor.reason();
   }
   const auto edges = edges_of<3>(out.cells, out.vertices.size());
   out.statistics = measure(out.vertices, out.cells, edges, settings.threads);
