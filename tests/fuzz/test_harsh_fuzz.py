@@ -6,6 +6,7 @@ from exact_judge import eigenvalue_ratios, mesh_problem
 from fuzz_tables import FAILURES, harsh_table_lines
 from fuzz_workers import outcomes
 from harsh_cases import make_harsh_case
+from harsh_judgement import run_harsh_case
 from meshes import square
 
 from anistar.mesh import Mesh
@@ -29,6 +30,20 @@ def test_most_harsh_cases_give_a_mesh(sample):
     n_cases, rows = sample
     assert sum(row["verdict"] == "ok" for row in rows) > 0.6 * n_cases
     assert any("all " in line for line in harsh_table_lines(rows))
+
+
+@pytest.mark.parametrize(
+    ("seed", "number"),
+    [
+        (1, 364),  # a collapse moved a ridge edge onto an edge of another sheet
+        (2, 272),
+        (1, 441),  # a facet doubled where bodies touch in edges
+        (2, 413),  # a gap closed between sheets that share two edges
+    ],
+)
+def test_what_went_wrong_in_space_once_goes_well(seed, number):
+    verdict = run_harsh_case(make_harsh_case(seed, number, dim=3))
+    assert (verdict.verdict, verdict.message) == ("ok", "")
 
 
 @pytest.mark.parametrize("dim", [2, 3])
