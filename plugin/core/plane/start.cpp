@@ -4,10 +4,14 @@
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
 
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -28,16 +32,33 @@ constexpr int max_retreats = 100;
 
 using EdgeKey = std::pair<Index, Index>;
 
+/// Inserts points in the order of a curve that fills the plane, as CGAL's own insertion
+/// of a range does, which cannot be interrupted.
+void insert_points(Cdt &cdt, const std::vector<Kernel::Point_2> &points,
+                   const std::function<void()> &look) {
+  using Places = CGAL::Pointer_property_map<Kernel::Point_2>::const_type;
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  CGAL::spatial_sort(order.begin(), order.end(),
+                     CGAL::Spatial_sort_traits_adapter_2<Kernel, Places>(
+                         CGAL::make_property_map(points)));
+  Cdt::Face_handle hint;
+  for (std::size_t k : order) {
+    look();
+    const Cdt::Vertex_handle v = cdt.insert(points[k], hint);
+    v->info() = static_cast<Index>(k);
+    hint = v->face();
+  }
+}
+
 Cdt insert_outline(const Outline &outline, const std::function<void()> &look) {
-  std::vector<std::pair<Kernel::Point_2, Index>> points;
-  for (std::size_t v = 0; v < outline.vertices.size(); ++v) {
-    require_finite(outline.vertices[v].x);
-    points.emplace_back(
-        Kernel::Point_2(outline.vertices[v].x[0], outline.vertices[v].x[1]),
-        static_cast<Index>(v));
+  std::vector<Kernel::Point_2> points;
+  for (const Vertex<2> &vertex : outline.vertices) {
+    require_finite(vertex.x);
+    points.emplace_back(vertex.x[0], vertex.x[1]);
   }
   Cdt cdt;
-  cdt.insert(points.begin(), points.end());
+  insert_points(cdt, points, look);
   std::vector<Cdt::Vertex_handle> handle(points.size());
   for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v)
     handle[static_cast<std::size_t>(v->info())] = v;
@@ -62,7 +83,8 @@ struct Component {
 /// The parts of the plane between the constraints, each with what its walls say.
 std::vector<Component> components(Cdt &cdt, const Outline &outline,
                                   const std::map<EdgeKey, Index> &edge_of,
-                                  const Geometry &geometry) {
+                                  const Geometry &geometry,
+                                  const std::function<void()> &look) {
   for (auto f = cdt.all_faces_begin(); f != cdt.all_faces_end(); ++f)
     f->info() = none;
   std::vector<Component> parts;
@@ -78,6 +100,7 @@ std::vector<Component> components(Cdt &cdt, const Outline &outline,
       part.region = part.region.value_or(region);
     };
     for (std::size_t k = 0; k < part.faces.size(); ++k) {
+      look();
       const Cdt::Face_handle face = part.faces[k];
       if (cdt.is_infinite(face))
         claim(no_region);
@@ -192,10 +215,9 @@ MeshOnCurves triangulate(Geometry &geometry, const Background<2> &background,
     for (std::size_t e = 0; e < outline.edges.size(); ++e) {
       const auto [a, b] = std::minmax(outline.edges[e].v0, outline.edges[e].v1);
       edge_of[{a, b}] = static_cast<Index>(e);
+      look();
     }
-    look();
-    const auto parts = components(cdt, outline, edge_of, geometry);
-    look();
+    const auto parts = components(cdt, outline, edge_of, geometry, look);
     wrong = misplaced(cdt, parts, geometry, outline);
     for (const Component &part : parts)
       if (part.contradicts)
