@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .algebra import compose, eigh
 from .bounds import Bound, check_bounds
-from .checks import check_result, check_tensors
+from .checks import MetricError, check_result, check_tensors
 from .complexity import integral_of_exponential
 from .error_model import predicted_error
 from .kernels.elementary import exp, log, power
@@ -73,7 +73,7 @@ def normalised(
     Raises
     ------
     MetricError
-        If `H` is not finite or not symmetric.
+        If `H` is not finite or not symmetric, or the mesh is so small that it has no volume.
     ValueError
         If `target_complexity`, `target_error`, `p` or `h_max` is out of range, or not exactly
         one target is given.
@@ -205,6 +205,8 @@ def _field(
     n, d = mesh.points.shape
     values, vectors = _spectra(check_tensors(H, n_points=n, dim=d, name=name))
     volumes = cell_volumes(mesh)
+    if not volumes.sum() > 0.0:
+        raise MetricError("the mesh has no volume in double precision to spread a complexity over")
     featureless = diameter(mesh) if h_max is None else h_max
     _, size, _ = check_bounds(n, h_min=None, h_max=featureless, a_max=None, points=mesh.points)
     assert size is not None  # it was given

@@ -82,7 +82,8 @@ class Landing:
                 f"project must return finite points of shape {(1, len(x))}, got {moved!r} for "
                 f"{_text(x)} and facet tag {tag}"
             )
-        return moved[0]
+        landed: NDArray[np.float64] = moved[0]
+        return landed
 
 
 def pointwise(project: Project, geometry: Mesh, scale: float) -> Callable[..., tuple[float, ...]]:

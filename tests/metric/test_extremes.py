@@ -7,7 +7,8 @@ from metric_meshes import box, from_arrays, is_at_least
 from anistar import metric
 from anistar.metric import growth
 from anistar.metric.graph import wide_graph
-from anistar.metric.kernels import compiled, gradation
+from anistar.metric.kernels import compiled
+from anistar.metric.kernels import gradation as kernels
 
 SQUARE = from_arrays(
     np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), np.array([[0, 1, 2], [0, 2, 3]])
@@ -53,7 +54,7 @@ def law(model, bound=np.inf):
     }
 
 
-@pytest.mark.parametrize("grade", [gradation.grade, growth.grade], ids=["compiled", "numpy"])
+@pytest.mark.parametrize("grade", [kernels.grade, growth.grade], ids=["compiled", "numpy"])
 @pytest.mark.parametrize("rows", [NOT_A_NUMBER, ENDLESS], ids=["not a number", "endless"])
 @pytest.mark.parametrize(
     ("model", "bound"), [("physical", np.inf), ("metric", 0.5), ("mixed", 1.0), ("none", 0.4)]
@@ -105,3 +106,11 @@ def test_the_unit_of_a_hessian_changes_nothing_however_absurd(dim, unit):
     plain = metric.normalised(mesh, H, target_complexity=100.0)
     other = metric.normalised(mesh, unit * H, target_complexity=100.0)
     np.testing.assert_allclose(other, plain, rtol=1e-9, atol=1e-9 * np.abs(plain).max())
+
+
+def test_a_mesh_too_small_to_have_a_volume_is_refused():
+    tiny = box(2, 3)
+    tiny.points = 1e-120 * tiny.points
+    H = np.tile(np.eye(3), (len(tiny.points), 1, 1))
+    with pytest.raises(metric.MetricError, match="the mesh has no volume in double precision"):
+        metric.normalised(tiny, H, target_complexity=100.0)

@@ -192,7 +192,7 @@ import numpy as np
 from meshes import square
 from anistar.remesh import RemeshOptions, remesh
 mesh = square(20)
-M = np.tile(np.diag([1e14, 10.0]), (mesh.n_points, 1, 1))
+M = np.tile(np.diag([1e13, 1.0]), (mesh.n_points, 1, 1))
 print("started", flush=True)
 remesh(mesh, M, RemeshOptions(max_memory=math.inf))
 """
