@@ -7,8 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .algebra import compose, eigh
+from .algebra import eigh
 from .checks import check_metric, check_result
+from .kernels.spectra import compose
 
 Array = NDArray[np.float64]
 

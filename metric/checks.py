@@ -7,7 +7,8 @@ import logging
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .algebra import compose, eigenvalues, eigh
+from .algebra import eigenvalues, eigh
+from .kernels.spectra import compose
 
 logger = logging.getLogger(__name__)
 

@@ -8,10 +8,11 @@ from functools import reduce
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .algebra import compose, congruent, eigh, exp_metric, log_metric, lower_factor, product
+from .algebra import congruent, eigh, exp_metric, log_metric, lower_factor, product
 from .checks import check_metric, check_result
 from .ellipsoids import largest_inside
 from .kernels.intersection import intersect
+from .kernels.spectra import compose
 
 Array = NDArray[np.float64]
 

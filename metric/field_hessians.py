@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import absolute, compose, eigh
+from .algebra import absolute, eigh
 from .bounds import check_bounds
 from .combination import intersection_of
 from .error_model import predicted_error
 from .graph import VertexGraph
 from .kernels.elementary import power
+from .kernels.spectra import compose
 from .mesh import MeshLike
 from .normalisation import SMALLEST_FLOOR
 from .options import MetricOptions

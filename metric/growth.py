@@ -8,9 +8,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import compose, determinant, eigh, lower_factor, norms
+from .algebra import determinant, eigh, lower_factor, norms
 from .graph import VertexGraph
 from .kernels.elementary import log
+from .kernels.spectra import compose
 from .simultaneous_reduction import intersection
 
 Array = NDArray[np.float64]

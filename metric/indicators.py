@@ -6,11 +6,12 @@ import numpy as np
 import scipy  # loads scipy.optimize, 9 MB, when it is first used
 from numpy.typing import ArrayLike, NDArray
 
-from .algebra import absolute, compose, eigh
+from .algebra import absolute, eigh
 from .bounds import bounded
 from .checks import check_tensors
 from .complexity import complexity
 from .kernels.elementary import exp, log, power
+from .kernels.spectra import compose
 from .mesh import MeshLike, cell_volumes, diameter
 from .normalisation import SMALLEST_FLOOR, check_target
 

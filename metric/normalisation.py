@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .algebra import compose, eigh
+from .algebra import eigh
 from .bounds import Bound, check_bounds
 from .checks import MetricError, check_result, check_tensors
 from .complexity import integral_of_exponential
 from .error_model import predicted_error
 from .kernels.elementary import exp, log, power
+from .kernels.spectra import compose
 from .mesh import MeshLike, cell_volumes, diameter, point_volumes
 
 Array = NDArray[np.float64]

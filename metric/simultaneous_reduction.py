@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import jacobi
-from .algebra import compose, congruent, lower_factor, product
+from .algebra import congruent, lower_factor, product
+from .kernels.spectra import compose
 
 Array = NDArray[np.float64]
 

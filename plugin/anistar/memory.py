@@ -8,8 +8,10 @@ from pathlib import Path
 
 try:
     import resource
-except ImportError:  # Windows has no such limits
-    resource = None  # type: ignore[assignment]
+except ImportError:
+    HAS_LIMITS = False  # on Windows
+else:
+    HAS_LIMITS = True
 
 PROC, GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
 
@@ -71,7 +73,7 @@ def _statistic(group: Path, name: str) -> float:
 
 
 def _left_in_address_space() -> float:
-    if resource is None:
+    if not HAS_LIMITS:
         return math.inf
     most, _ = resource.getrlimit(resource.RLIMIT_AS)
     if most == resource.RLIM_INFINITY:

@@ -19,7 +19,7 @@ from .options import require
 from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport, report_of
-from .volume_demand import check_sizes
+from .size_range import check_sizes
 from .volume_remesh import check_surfaces, remesh_volume
 
 Float = NDArray[np.float64]
