@@ -60,25 +60,28 @@ wheel: ## Build a wheel that needs no compiler into dist/, and try it
 	@cd build/wheel && env -i PATH=/nowhere venv/bin/anistar doctor
 	@ls dist/*.whl
 
-# The sanitized build goes beside the ordinary one. Python itself is not instrumented: the
-# run-time libraries are loaded first, and leaks, of which the interpreter is full, not counted.
+# The sanitized builds go beside the ordinary one, which they do without. Python itself is not
+# instrumented: the run-time libraries are loaded first, and leaks, of which the interpreter is full,
+# not counted. Debug asserts are on; -O1 keeps the time within bounds.
 SANITIZED := build/sanitize
-sanitize: setup ## Run the tests with the address and undefined-behaviour sanitizers
-	@$(PYTHON) -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
-	  --upgrade --target $(SANITIZED)/site --config-settings build-dir=$(SANITIZED)/cmake \
-	  --config-settings cmake.build-type=Debug --config-settings cmake.define.ANISTAR_SANITIZE=ON .
-	@PYTHONPATH=$(SANITIZED)/site ASAN_OPTIONS=detect_leaks=0 \
+install_sanitized = $(PYTHON) -m pip install --quiet --disable-pip-version-check \
+  --no-build-isolation --no-deps --upgrade --target $(SANITIZED)/$(1) \
+  --config-settings build-dir=$(SANITIZED)/cmake-$(1) \
+  --config-settings cmake.build-type=Debug --config-settings cmake.define.$(2)=ON .
+
+sanitize: ## Run the tests with the address and undefined-behaviour sanitizers
+	@./bootstrap.sh environment
+	@$(call install_sanitized,addresses,ANISTAR_SANITIZE)
+	@PYTHONPATH=$(CURDIR)/$(SANITIZED)/addresses ASAN_OPTIONS=detect_leaks=0 \
 	  UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
 	  LD_PRELOAD="$$(c++ -print-file-name=libasan.so) $$(c++ -print-file-name=libubsan.so)" \
-	  $(PYTHON) -m pytest -p no:cacheprovider -q
+	  $(PYTHON) -m pytest -p no:cacheprovider $(PYTEST_ARGS)
 
 # As above, for races.
-sanitize-threads: setup ## Run the tests of threads with the thread sanitizer
-	@$(PYTHON) -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
-	  --upgrade --target $(SANITIZED)/threads --config-settings build-dir=$(SANITIZED)/cmake-threads \
-	  --config-settings cmake.build-type=Debug \
-	  --config-settings cmake.define.ANISTAR_SANITIZE_THREADS=ON .
-	@PYTHONPATH=$(SANITIZED)/threads TSAN_OPTIONS=halt_on_error=1 OPENBLAS_NUM_THREADS=1 \
+sanitize-threads: ## Run the tests of threads with the thread sanitizer
+	@./bootstrap.sh environment
+	@$(call install_sanitized,threads,ANISTAR_SANITIZE_THREADS)
+	@PYTHONPATH=$(CURDIR)/$(SANITIZED)/threads TSAN_OPTIONS=halt_on_error=1 OPENBLAS_NUM_THREADS=1 \
 	  LD_PRELOAD="$$(c++ -print-file-name=libtsan.so)" \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/remesh/test_threads.py tests/remesh3d/test_threads_3d.py
 

@@ -6,6 +6,7 @@
 #   ./bootstrap.sh docs       also what `make docs` needs
 #   ./bootstrap.sh bench      also what `make bench` needs
 #   ./bootstrap.sh wheel      also what `make wheel` needs
+#   ./bootstrap.sh environment  all but anistar itself, of which another build goes elsewhere
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -151,6 +152,9 @@ main() {
   install_debian_packages
   make_environment
   install_requirements development
+  if [ "$*" = environment ]; then
+    return
+  fi
   for extra in "$@"; do
     install_requirements "$extra"
   done

@@ -209,12 +209,15 @@ namespace detail {
 [[nodiscard]] inline double exp_difference(double a, double b, double exp_a,
                                            double exp_b) {
   const double h = a - b;
-  if (std::abs(h) > .5)
+  if (std::abs(h) > .1)
     return (exp_a - exp_b) / h;
-  // (exp(h) - 1) / h by its series, where the difference cancels
-  double sum = 1;
-  for (int k = 14; k >= 2; --k)
-    sum = 1 + sum * h / k;
+  // (exp(h) - 1) / h by its series where the difference cancels: sum of h^k / (k + 1)!
+  constexpr double c[] = {1.,       1. / 2,    1. / 6,     1. / 24,     1. / 120,
+                          1. / 720, 1. / 5040, 1. / 40320, 1. / 362880, 1. / 3628800};
+  const double h2 = h * h, h4 = h2 * h2;
+  const double sum =
+      (c[0] + c[1] * h) + h2 * (c[2] + c[3] * h) +
+      h4 * ((c[4] + c[5] * h) + h2 * (c[6] + c[7] * h) + h4 * (c[8] + c[9] * h));
   return exp_b * sum;
 }
 

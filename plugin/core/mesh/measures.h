@@ -30,13 +30,18 @@ template <std::size_t d>
 /// Mean of the lengths la, lb of an edge in the metrics of its ends, for a size that
 /// varies geometrically in between.
 [[nodiscard]] inline double mean_length(double la, double lb) {
-  const double difference = la - lb, sum = la + lb;
-  // the next term of the series is below 1e-9 here
-  if (std::abs(difference) < 2e-2 * sum) {
-    const double r = difference / sum;
-    return .5 * sum * (1 - r * r / 3);
+  const double r = (la - lb) / (la + lb), x = r * r, x2 = x * x, mean = .5 * (la + lb);
+  // log(la / lb) = 2 atanh r, and the series of r / atanh r costs less than a logarithm
+  constexpr double near = 4e-4, far = 1. / 16;
+  if (x < near) // the next term is below 1e-8
+    return mean * (1 - x / 3);
+  if (x < far) { // and here below 2e-11
+    constexpr double c[] = {1.,     1. / 3,  1. / 5,  1. / 7,
+                            1. / 9, 1. / 11, 1. / 13, 1. / 15};
+    return mean / ((c[0] + c[1] * x) + x2 * (c[2] + c[3] * x) +
+                   x2 * x2 * ((c[4] + c[5] * x) + x2 * (c[6] + c[7] * x)));
   }
-  return difference / elementary::log(la / lb);
+  return (la - lb) / elementary::log(la / lb);
 }
 
 template <std::size_t d>
