@@ -12,10 +12,10 @@ SIZE = 1e-13
 """Relative; some hundred times the round-off that another library may make."""
 
 
-def perturbed(values, number):
-    """Return values, or tensors at points, times 1 + 1e-13 at most; number 0 changes nothing."""
+def perturbed(values, number, size=SIZE):
+    """Return values, or tensors at points, times 1 + `size` at most; number 0 changes nothing."""
     if number == 0:
         return np.array(values)
     random = np.random.default_rng(number)
-    factors = 1.0 + SIZE * random.uniform(-1.0, 1.0, len(values))
+    factors = 1.0 + size * random.uniform(-1.0, 1.0, len(values))
     return values * factors.reshape(-1, *[1] * (np.ndim(values) - 1))

@@ -20,7 +20,7 @@ def machine(tmp_path, monkeypatch):
     """Write what a machine tells about itself below a folder; returns a function for that."""
     monkeypatch.setattr(memory, "PROC", tmp_path / "proc")
     monkeypatch.setattr(memory, "GROUPS", tmp_path / "groups")
-    monkeypatch.setattr(memory, "resource", None)
+    monkeypatch.setattr(memory, "HAS_LIMITS", False)
 
     def write(files):
         for name, text in files.items():
@@ -76,7 +76,7 @@ def test_groups_of_the_first_version_are_read_too(machine):
 
 def test_a_limit_of_address_space_bounds_what_is_available(machine, monkeypatch):
     resource = pytest.importorskip("resource")
-    monkeypatch.setattr(memory, "resource", resource)
+    monkeypatch.setattr(memory, "HAS_LIMITS", True)
     monkeypatch.setattr(resource, "getrlimit", lambda kind: (10**9, -1))
     machine({"proc/self/statm": "1000 900 800\n"})
     assert memory.available_memory() == 10**9 - 1000 * resource.getpagesize()
