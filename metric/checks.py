@@ -22,11 +22,11 @@ LARGEST_RATIO = 1e14
 Rounding the entries of a tensor moves its eigenvalues by some 1e-16 of the largest one. At this
 ratio the smallest one keeps two digits, and its sign in every formula."""
 
-SMALLEST_ENTRY, LARGEST_ENTRY = 1e-60, 1e60
-"""Bounds of the largest entry of a metric.
+LARGEST_ENTRY = {2: 1e140, 3: 1e60}
+"""Bound of the largest entry of a metric, and of its inverse, by dimension.
 
-With the bound of the ratio its eigenvalues are in [1e-74, 1e60], so that products of four of them,
-of which determinants in 3D are made, stay in the range of doubles."""
+With the bound of the ratio the eigenvalues are above 1e-154 in 2D and 1e-74 in 3D, so that products
+of two and of four of them, of which determinants are made, stay in the range of doubles."""
 
 
 REPAIRS = ("raise", "floor")
@@ -61,7 +61,7 @@ def check_metric(
         What to do where a tensor is not positive definite, or its eigenvalues differ by more than
         1e14. ``floor`` lifts them to 1e-12 times the largest one, or where none is positive to
         the smallest value that the other points got, and logs a warning. What is not finite, not
-        symmetric or out of the range of [1e-60, 1e60] raises always.
+        symmetric or out of range raises always.
 
     Returns
     -------
@@ -73,7 +73,8 @@ def check_metric(
     MetricError
         If the shape is wrong, or a tensor is not finite, not symmetric, not positive definite,
         or not so in double precision: two eigenvalues differ by more than 1e14, or the largest
-        entry is not in [1e-60, 1e60]. The first such point is named.
+        entry is not in [1e-140, 1e140] in 2D or [1e-60, 1e60] in 3D. The first such point is
+        named.
     TypeError
         If the values are not real numbers.
     ValueError
@@ -136,12 +137,13 @@ def check_result(M: NDArray[np.float64], operation: str) -> NDArray[np.float64]:
 
 def _check_magnitude(tensors: NDArray[np.float64], name: str) -> None:
     """Raise MetricError where determinants would leave the range of doubles; zero passes."""
+    bound = LARGEST_ENTRY[tensors.shape[-1]]
     largest = np.abs(tensors).max(axis=(1, 2), initial=0.0)
-    bad = np.flatnonzero((largest > LARGEST_ENTRY) | ((largest > 0.0) & (largest < SMALLEST_ENTRY)))
+    bad = np.flatnonzero((largest > bound) | ((largest > 0.0) & (largest < 1.0 / bound)))
     if bad.size:
         raise MetricError(
             f"{name} at point {bad[0]} is out of range: its largest entry {largest[bad[0]]:.1e} is "
-            f"outside of [{SMALLEST_ENTRY:g}, {LARGEST_ENTRY:g}]{_others(bad)}"
+            f"outside of [{1.0 / bound:g}, {bound:g}]{_others(bad)}"
         )
 
 

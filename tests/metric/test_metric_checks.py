@@ -102,7 +102,7 @@ def test_a_tensor_that_is_singular_in_double_precision_is_no_metric():
     ("operation", "call"),
     [
         ("the bounds", lambda M: metric.bounded(M, h_min=1e-200, h_max=1e-190)),
-        ("the normalisation", lambda M: metric.normalised(box(1, 2), M, target_complexity=1e70)),
+        ("the normalisation", lambda M: metric.normalised(box(1, 2), M, target_complexity=1e150)),
         ("the squares of the sizes", lambda M: metric.from_sizes(1e-200 * np.ones(3))),
     ],
 )

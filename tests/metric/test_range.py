@@ -51,8 +51,10 @@ def test_a_ratio_within_the_bound_passes_and_one_beyond_does_not(dim, size):
         metric.check_metric(M)
 
 
-@pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("entry", [1e-300, 1e-154, 1e-70, 1e70, 1e154, 1e300])
+@pytest.mark.parametrize(
+    ("dim", "entry"),
+    [(2, 1e-300), (2, 1e-150), (2, 1e150), (2, 1e300), (3, 1e-150), (3, 1e-70), (3, 1e70)],
+)
 def test_entries_whose_determinant_doubles_cannot_hold_are_refused(dim, entry):
     M = np.tile(np.eye(dim), (4, 1, 1))
     M[3] *= entry
