@@ -68,3 +68,15 @@ def test_scaling_the_metric_scales_lengths_and_leaves_quality(mesh):
     assert four.longest_edge == pytest.approx(4 * one.longest_edge)
     assert four.worst_quality == pytest.approx(one.worst_quality)
     assert four.edges == one.edges
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_tetrahedron_that_fits_a_nearly_singular_metric_is_perfect(seed):
+    # the determinant that the entries give is round-off there, of either sign
+    corners = np.array([[1, 1, 1], [-1, 1, -1], [1, -1, -1], [-1, -1, 1]]) / np.sqrt(8)
+    turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    turn *= np.sign(np.linalg.det(turn))
+    sizes = np.array([1.0, 1e6, 1e6])
+    mesh = Mesh(points=corners * sizes @ turn.T, cells=[[0, 1, 2, 3]])
+    M = constant(mesh, turn / sizes**2 @ turn.T)
+    assert mean_ratios(mesh, 0.5 * (M + M.transpose(0, 2, 1))) == pytest.approx(1.0, abs=0.02)
