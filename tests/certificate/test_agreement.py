@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from meshes import square
+from perturbations import perturbed
 
 import anistar
 from anistar.consistency import ConsistencyOptions
