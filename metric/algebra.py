@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .kernels.elementary import exp, log
-from .kernels.spectra import compose, spectra
+from .kernels.spectra import compose, product, spectra
 
 Array = NDArray[np.float64]
 
@@ -30,11 +30,6 @@ def eigh(T: Array) -> tuple[Array, Array]:
 def eigenvalues(T: Array) -> Array:
     """Eigenvalues (n, d) of symmetric `T`, increasing."""
     return spectra(T)[0]
-
-
-def product(A: Array, B: Array) -> Array:
-    """Return the products ``A B`` of stacked matrices (..., i, j) and (..., j, k)."""
-    return np.asarray(np.einsum("...ij,...jk->...ik", A, B))
 
 
 def norms(v: Array) -> Array:

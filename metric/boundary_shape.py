@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from .algebra import eigh, norms, product
+from .algebra import eigh, norms
 from .kernels.elementary import angle_of, cosine
+from .kernels.spectra import product
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int32]

@@ -8,11 +8,11 @@ from functools import reduce
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .algebra import congruent, eigh, exp_metric, log_metric, lower_factor, product
+from .algebra import congruent, eigh, exp_metric, log_metric, lower_factor
 from .checks import check_metric, check_result
 from .ellipsoids import largest_inside
 from .kernels.intersection import intersect
-from .kernels.spectra import compose
+from .kernels.spectra import compose, product
 
 Array = NDArray[np.float64]
 

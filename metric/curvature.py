@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import product
 from .boundary_shape import BoundaryShape, curve_shape, surface_shape
 from .checks import check_result
 from .kernels.intersection import intersect
+from .kernels.spectra import product
 from .mesh import MeshLike, diameter
 from .sizes import from_sizes
 

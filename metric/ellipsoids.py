@@ -17,11 +17,11 @@ from .algebra import (
     inverse,
     log_determinant,
     lower_factor,
-    product,
     solved,
     sqrt_metric,
 )
 from .kernels.intersection import intersect
+from .kernels.spectra import product
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

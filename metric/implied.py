@@ -7,8 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import determinant, exp_metric, log_metric, product
+from .algebra import determinant, exp_metric, log_metric
 from .checks import check_result
+from .kernels.spectra import product
 from .mesh import MeshLike
 
 Array = NDArray[np.float64]

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import jacobi
-from .algebra import congruent, lower_factor, product
-from .kernels.spectra import compose
+from .algebra import congruent, lower_factor
+from .kernels.spectra import compose, product
 
 Array = NDArray[np.float64]
 

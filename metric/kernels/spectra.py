@@ -1,4 +1,4 @@
-"""Spectra of symmetric tensors, many at once."""
+"""Spectra of symmetric tensors, and products of small matrices, many at once."""
 
 from __future__ import annotations
 
@@ -27,3 +27,14 @@ def compose(values: Array, vectors: Array) -> Array:
         np.ascontiguousarray(values), np.ascontiguousarray(vectors)
     )
     return tensors
+
+
+def product(A: Array, B: Array) -> Array:
+    """Return the products ``A B`` of stacked matrices (..., i, j) and (..., j, k)."""
+    if compiled.core is None or not A.shape[-2:] == B.shape[-2:] in ((2, 2), (3, 3)):
+        return np.asarray(np.einsum("...ij,...jk->...ik", A, B))
+    shape = np.broadcast_shapes(A.shape, B.shape)
+    factors = [
+        np.ascontiguousarray(np.broadcast_to(X, shape)).reshape(-1, *shape[-2:]) for X in (A, B)
+    ]
+    return np.asarray(compiled.core.product(*factors)).reshape(shape)

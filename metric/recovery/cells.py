@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ..algebra import product
+from ..kernels.spectra import product
 from ..mesh import MeshLike, point_volumes
 
 Array = NDArray[np.float64]

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ..algebra import eigh, product
+from ..algebra import eigh
+from ..kernels.spectra import product
 from .least_squares import Equations, factored, gain, residual, solved
 
 Array = NDArray[np.float64]

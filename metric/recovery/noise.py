@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ..algebra import determinant, product
+from ..algebra import determinant
 from ..kernels.elementary import power
+from ..kernels.spectra import product
 from .fit import Cloud, fit_patches
 
 Array = NDArray[np.float64]

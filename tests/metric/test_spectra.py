@@ -8,10 +8,10 @@ from anistar.metric.algebra import (
     inverse,
     log_determinant,
     lower_factor,
-    product,
     solved,
 )
-from anistar.metric.kernels.spectra import compose, spectra
+from anistar.metric.kernels import compiled
+from anistar.metric.kernels.spectra import compose, product, spectra
 
 both_dims = pytest.mark.parametrize("dim", [2, 3])
 
@@ -99,3 +99,18 @@ def test_a_tensor_that_is_not_definite_has_no_factor():
     L = lower_factor(M)
     assert np.isfinite(L[0]).all()
     assert np.isnan(L[1]).any()
+
+
+@both_dims
+def test_products_are_those_of_matrices_with_and_without_the_core(dim, monkeypatch):
+    A, B = np.random.default_rng(4).normal(size=(2, 50, dim, dim))
+    expected = [
+        [[sum(a[i] * b[i] for i in range(dim)) for b in Y.T] for a in X]
+        for X, Y in zip(A, B, strict=True)
+    ]
+    np.testing.assert_allclose(product(A, B), expected, rtol=1e-15, atol=1e-15)
+    many = product(A[:, None], np.stack([B, B], axis=1))
+    np.testing.assert_allclose(many[:, 1], product(A, B), rtol=1e-14, atol=1e-15)
+    by_core = product(A, B)
+    monkeypatch.setattr(compiled, "core", None)
+    np.testing.assert_allclose(product(A, B), by_core, rtol=1e-14, atol=1e-15)

@@ -184,24 +184,10 @@ template <std::size_t d, class Function>
   return compose<d>(s.values, s.vectors);
 }
 
-/// f(M), for a function of a pair of numbers.
-template <std::size_t d, class Function>
-[[nodiscard]] inline SymmetricTensor<d> elementary_function(const SymmetricTensor<d> &M,
-                                                            Function f) {
-  Spectrum<d> s = spectrum(M);
-  const elementary::Pair ends = f(elementary::Pair(s.values[0], s.values[d - 1]));
-  if constexpr (d == 3)
-    s.values[1] = f(elementary::Pair::Constant(s.values[1]))[0];
-  s.values[0] = ends[0];
-  s.values[d - 1] = ends[1];
-  return compose<d>(s.values, s.vectors);
-}
-
 /// @pre M is positive definite.
 template <std::size_t d>
 [[nodiscard]] inline SymmetricTensor<d> log(const SymmetricTensor<d> &M) {
-  return elementary_function(
-      M, [](const elementary::Pair &x) { return elementary::log(x); });
+  return matrix_function(M, [](double x) { return elementary::log(x); });
 }
 
 namespace detail {
@@ -265,10 +251,10 @@ template <std::size_t d>
     constexpr double largest_range = 20;
     if (x - z < largest_range) {
       // Newton interpolation in x, y, z; exp is entire, so nearly equal nodes are fine
-      const elementary::Pair ends = elementary::exp(elementary::Pair(x, z));
-      const double exp_y = elementary::exp(y);
-      const double xy = detail::exp_difference(x, y, ends[0], exp_y),
-                   yz = detail::exp_difference(y, z, exp_y, ends[1]);
+      const double exp_x = elementary::exp(x), exp_y = elementary::exp(y),
+                   exp_z = elementary::exp(z);
+      const double xy = detail::exp_difference(x, y, exp_x, exp_y),
+                   yz = detail::exp_difference(y, z, exp_y, exp_z);
       // near each other: half of exp of their mean
       const double xyz =
           x - z > 1e-4 ? (xy - yz) / (x - z) : .5 * exp_y * (1 + (x - 2 * y + z) / 3);
@@ -282,12 +268,11 @@ template <std::size_t d>
           out(i, j) = xy * A(i, j) +
                       xyz * (A(i, 0) * B(0, j) + A(i, 1) * B(1, j) + A(i, 2) * B(2, j));
       for (std::size_t i = 0; i < d; ++i)
-        out(i, i) += ends[0];
+        out(i, i) += exp_x;
       return out;
     }
   }
-  return elementary_function(
-      L, [](const elementary::Pair &x) { return elementary::exp(x); });
+  return matrix_function(L, [](double x) { return elementary::exp(x); });
 }
 
 /// The lower triangular L with L L^T = M.

@@ -2,49 +2,39 @@
 #include "arrays.h"
 #include "bind.h"
 
+#include <algorithm>
+#include <stdexcept>
+
 namespace anistar::bindings {
 namespace {
 
 using Values = Array1<double>;
 
-/// `function` of all the values, two at a time.
+/// `function` of all the values.
 template <class Function>
 nb::ndarray<nb::numpy, double> mapped(Values values, Function function) {
-  const std::size_t n = values.size();
-  std::vector<double> out(n);
+  std::vector<double> out(values.size());
   {
     nb::gil_scoped_release release;
-    const double *x = values.data();
-    for (std::size_t i = 0; i < n; i += 2) {
-      const elementary::Pair y =
-          function(elementary::Pair(x[i], x[std::min(i + 1, n - 1)]));
-      out[i] = y[0];
-      if (i + 1 < n)
-        out[i + 1] = y[1];
-    }
+    std::transform(values.data(), values.data() + values.size(), out.begin(), function);
   }
-  return owned(std::move(out), {n});
+  return owned(std::move(out), {values.size()});
 }
 
 nb::ndarray<nb::numpy, double> exp(Values values) {
-  return mapped(values, [](const elementary::Pair &x) { return elementary::exp(x); });
+  return mapped(values, [](double x) { return elementary::exp(x); });
 }
 
 nb::ndarray<nb::numpy, double> log(Values values) {
-  return mapped(values, [](const elementary::Pair &x) { return elementary::log(x); });
+  return mapped(values, [](double x) { return elementary::log(x); });
 }
 
 nb::ndarray<nb::numpy, double> power(Values values, double exponent) {
-  return mapped(values, [=](const elementary::Pair &x) {
-    return elementary::power(x, exponent);
-  });
+  return mapped(values, [=](double x) { return elementary::power(x, exponent); });
 }
 
 nb::ndarray<nb::numpy, double> cosine(Values values) {
-  return mapped(values, [](const elementary::Pair &x) {
-    return elementary::Pair(elementary::sine_cosine(x[0]).cosine,
-                            elementary::sine_cosine(x[1]).cosine);
-  });
+  return mapped(values, [](double x) { return elementary::sine_cosine(x).cosine; });
 }
 
 nb::ndarray<nb::numpy, double> angle_of(Values y, Values x) {

@@ -41,6 +41,21 @@ nb::ndarray<nb::numpy, double> compose(Array2<double> values, Array3<double> vec
   return owned(std::move(tensors), {n, d, d});
 }
 
+nb::ndarray<nb::numpy, double> product(Array3<double> first, Array3<double> second) {
+  const std::size_t n = first.shape(0);
+  const std::size_t d = dimension(first.shape(1), first.shape(2));
+  if (second.shape(0) != n || second.shape(1) != d || second.shape(2) != d)
+    throw std::invalid_argument("both factors must have one shape (n, d, d)");
+  std::vector<double> out;
+  {
+    nb::gil_scoped_release release;
+    const std::span<const double> A(first.data(), first.size());
+    const std::span<const double> B(second.data(), second.size());
+    out = d == 2 ? products<2>(A, B) : products<3>(A, B);
+  }
+  return owned(std::move(out), {n, d, d});
+}
+
 } // namespace
 
 void bind_spectra(nb::module_ &module) {
@@ -50,6 +65,8 @@ void bind_spectra(nb::module_ &module) {
   module.def("compose", &compose, nb::arg("values").noconvert(),
              nb::arg("vectors").noconvert(),
              "The tensors (n, d, d) with the given eigenvalues and eigenvectors.");
+  module.def("product", &product, nb::arg("first").noconvert(),
+             nb::arg("second").noconvert(), "The products of matrices (n, d, d).");
 }
 
 } // namespace anistar::bindings

@@ -148,11 +148,32 @@ std::vector<double> composed(std::span<const double> values,
   return tensors;
 }
 
+template <std::size_t d>
+std::vector<double> products(std::span<const double> first,
+                             std::span<const double> second) {
+  std::vector<double> out(first.size());
+  for (std::size_t start = 0; start < out.size(); start += d * d) {
+    const double *A = &first[start], *B = &second[start];
+    for (std::size_t i = 0; i < d; ++i)
+      for (std::size_t k = 0; k < d; ++k) {
+        double sum = 0;
+        for (std::size_t j = 0; j < d; ++j)
+          sum += A[i * d + j] * B[j * d + k];
+        out[start + i * d + k] = sum;
+      }
+  }
+  return out;
+}
+
 template Spectra spectra<2>(std::span<const double>);
 template Spectra spectra<3>(std::span<const double>);
 template std::vector<double> composed<2>(std::span<const double>,
                                          std::span<const double>);
 template std::vector<double> composed<3>(std::span<const double>,
+                                         std::span<const double>);
+template std::vector<double> products<2>(std::span<const double>,
+                                         std::span<const double>);
+template std::vector<double> products<3>(std::span<const double>,
                                          std::span<const double>);
 
 } // namespace anistar

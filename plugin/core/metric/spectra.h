@@ -24,4 +24,9 @@ template <std::size_t d>
 [[nodiscard]] std::vector<double> composed(std::span<const double> values,
                                            std::span<const double> vectors);
 
+/// The products of n pairs of d x d matrices.
+template <std::size_t d>
+[[nodiscard]] std::vector<double> products(std::span<const double> first,
+                                           std::span<const double> second);
+
 } // namespace anistar

@@ -34,19 +34,13 @@ void add_circumcentre(const Vertex<2> &v, const Vertex<2> &a, const Vertex<2> &b
 Vector<2> pliant_displacement(const Triangulation<2> &mesh, const Vertex<2> &v,
                               std::span<const HalfFacet> star) {
   Vector<2> force = Vector<2>::Zero();
-  const auto neighbour = [&](std::size_t k) -> const Vertex<2> & {
-    return mesh.vertex(mesh.facet(star[k])[0]);
+  const auto pull = [&](const Vertex<2> &neighbour) {
+    const double length = edge_length(v, neighbour);
+    const double fourth = length * length * length * length;
+    force -= ((1 - fourth) * elementary::exp(-fourth) / length) * (neighbour.x - v.x);
   };
-  for (std::size_t first = 0; first < star.size(); first += 2) { // exp takes two
-    const std::size_t last = std::min(first + 1, star.size() - 1);
-    const elementary::Pair length(edge_length(v, neighbour(first)),
-                                  edge_length(v, neighbour(last)));
-    const elementary::Pair fourth = length * length * length * length;
-    const elementary::Pair towards = -fourth;
-    const elementary::Pair pull = (1 - fourth) * elementary::exp(towards) / length;
-    for (std::size_t k = first; k <= last; ++k)
-      force -= pull[static_cast<int>(k - first)] * (neighbour(k).x - v.x);
-  }
+  for (HalfFacet h : star)
+    pull(mesh.vertex(mesh.facet(h)[0]));
   return pliant_step * force;
 }
 

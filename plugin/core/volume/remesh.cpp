@@ -309,7 +309,10 @@ VolumeResult remesh_volume(const VolumeInput &input,
     take_counts(passes.counts(), out);
     const bool is_over =
         passes.is_full() || out.vertices.size() > settings.max_vertices;
-    out.reason = is_over ? StopReason::max_vertices : monitor.reason();
+    out.reason = monitor.reason();
+    // what the clock has ended may end elsewhere the next time: that is told first
+    if (is_over && out.reason == StopReason::finished)
+      out.reason = StopReason::max_vertices;
   }
   const auto edges = edges_of<3>(out.cells, out.vertices.size());
   out.statistics = measure(out.vertices, out.cells, edges, settings.threads);
