@@ -91,7 +91,7 @@ def _constant(rng, x):
 
 def _waves(rng, x, n, height):
     k = rng.normal(size=(n, x.shape[1])) * 10 ** rng.uniform(-0.5, 2)
-    return height * np.sin(np.einsum("nd,kd->nk", x, k) + rng.uniform(0, 6, n))
+    return height * np.sin(np.einsum("ni,ki->nk", x, k) + rng.uniform(0, 6, n))
 
 
 def _rotating(rng, x):
@@ -146,7 +146,7 @@ def _exponential(rng, x):
     """Sizes that change by orders of magnitude across the domain."""
     d = x.shape[1]
     along = rng.normal(size=d)
-    slope = _orders(rng) * np.einsum("nd,d->n", x, along / np.linalg.norm(along))
+    slope = _orders(rng) * np.einsum("ni,i->n", x, along / np.linalg.norm(along))
     return _composed(_random_frames(rng, 1, d), slope[:, None] * rng.choice([0, 1], d) + 0 * x)
 
 
@@ -154,7 +154,7 @@ def _layer(rng, x):
     """A layer along a plane, thinner than any cell."""
     d = x.shape[1]
     frames = _random_frames(rng, 1, d)
-    far = np.einsum("nd,d->n", x, frames[0, :, 0]) + rng.uniform(-0.3, 0.3)
+    far = np.einsum("ni,i->n", x, frames[0, :, 0]) + rng.uniform(-0.3, 0.3)
     near = np.exp(-((far / 10 ** rng.uniform(-4, -0.3)) ** 2))
     return _composed(frames, np.concatenate([-_orders(rng) * near[:, None], 0 * x[:, 1:]], axis=1))
 
