@@ -28,6 +28,9 @@ LAST_BUCKET = 1000 * BUCKETS_PER_OCTAVE
 LOG_STEPS = 2.0**20
 """Determinants count as equal when their logarithms are, to this many parts of one."""
 
+SPECTRUM_ERROR = 8.0 * np.finfo(np.float64).eps
+"""Error of eigenvalues, relative to the largest, of a tensor taken apart and put together."""
+
 LOG2_E = 1.4426950408889634
 """Logarithm of e to the base 2."""
 
@@ -105,8 +108,9 @@ def _raise(M: Array, q: NDArray[np.int32], requests: Array, tolerance: float) ->
         raised, changed = intersection(before, requests, tolerance)
         pivots = [np.diagonal(lower_factor(T[changed]), axis1=1, axis2=2) for T in (raised, before)]
         growth = (pivots[0] / pivots[1]).prod(axis=1)
-    # half of what the square root of the determinant must grow by
-    denser = np.flatnonzero(changed)[growth > 1.0 + 0.25 * tolerance]
+        noise = SPECTRUM_ERROR * np.square(pivots[1].max(axis=1) / pivots[1].min(axis=1))
+    # a quarter is half of what the square root of the determinant must grow by
+    denser = np.flatnonzero(changed)[growth > 1.0 + np.maximum(0.25 * tolerance, noise)]
     M[q[denser]] = raised[denser]
     return q[denser]
 

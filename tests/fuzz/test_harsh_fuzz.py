@@ -10,6 +10,7 @@ from harsh_judgement import run_harsh_case
 from meshes import square
 
 from anistar.mesh import Mesh
+from anistar.metric.gradation import GrowthLaw, grade_on, wide_graph
 
 
 @pytest.fixture(scope="module", params=[(2, 30), (3, 12)], ids=["2D", "3D"])
@@ -44,6 +45,15 @@ def test_most_harsh_cases_give_a_mesh(sample):
 def test_what_went_wrong_in_space_once_goes_well(seed, number):
     verdict = run_harsh_case(make_harsh_case(seed, number, dim=3))
     assert (verdict.verdict, verdict.message) == ("ok", "")
+
+
+def test_neighbours_do_not_hand_round_off_to_and_fro_when_a_metric_is_graded():
+    # each raise was round-off of the smallest eigenvalue: a minute for 324 points
+    case = make_harsh_case(21, 74, dim=3)
+    law = GrowthLaw(factor=1.5, model="physical")
+    growth = grade_on(wide_graph(case.mesh), case.mesh.points, case.metric, law)
+    assert growth.converged
+    assert growth.updates < 100 * case.mesh.n_points
 
 
 @pytest.mark.parametrize("dim", [2, 3])

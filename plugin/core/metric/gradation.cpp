@@ -20,6 +20,9 @@ constexpr double last_bucket = 1000 * buckets_per_octave;
 constexpr double log_steps = 1 << 20;
 /// Share of the entries by which round-off can shift the leading minors, with a margin.
 constexpr double minor_error = 1e-13;
+/// Error of the eigenvalues of a tensor that is taken apart and put together, relative
+/// to the largest: some units of round-off.
+constexpr double spectrum_error = 8 * std::numeric_limits<double>::epsilon();
 
 /// Vertices that ask between two looks at the user: some hundredths of a second.
 constexpr std::size_t looks_every = 1 << 14;
@@ -58,15 +61,21 @@ bool is_clearly_below(const SymmetricTensor<d> &N, const SymmetricTensor<d> &M) 
 
 /// Whether the density of a raised metric grew, by the pivots of its factor. Round-off
 /// eats what is added far below the largest eigenvalue: the same would be asked again
-/// and again. What grows each time comes to an end.
+/// and again. What grows each time comes to an end, and soon where the growth is no
+/// round-off of the smallest eigenvalue, which neighbours would hand to and fro.
 template <std::size_t d>
 bool is_denser(const SymmetricTensor<d> &raised, const SymmetricTensor<d> &before,
                double tolerance) {
   const Matrix<d> after = lower_factor(raised), L = lower_factor(before);
-  double growth = 1;
-  for (int i = 0; i < static_cast<int>(d); ++i)
+  double growth = 1, least = L(0, 0), largest = least;
+  for (int i = 0; i < static_cast<int>(d); ++i) {
     growth *= after(i, i) / L(i, i);
-  return growth > 1 + .25 * tolerance; // half of what the square root must grow by
+    least = std::min(least, L(i, i));
+    largest = std::max(largest, L(i, i));
+  }
+  const double ratio = largest / least;
+  // a quarter is half of what the square root must grow by
+  return growth > 1 + std::max(.25 * tolerance, spectrum_error * ratio * ratio);
 }
 
 template <std::size_t d> class Gradation {
