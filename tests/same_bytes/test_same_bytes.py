@@ -19,15 +19,8 @@ def plain():
     return made_at(Level(name="as this CPU is", variables={}))
 
 
-@pytest.mark.parametrize("level", simd_levels(), ids=lambda level: level.name)
-def test_every_result_has_the_same_bytes_at_every_simd_level(level, plain):
+@pytest.mark.parametrize("level", [*simd_levels(), *libm_levels()], ids=lambda level: level.name)
+def test_every_result_has_the_same_bytes_with_other_loops_and_another_libm(level, plain):
     made = made_at(level)
-    assert made["level"]["simd"] == level.expected["simd"]
-    assert made["digests"] == plain["digests"]
-
-
-@pytest.mark.parametrize("level", libm_levels(), ids=lambda level: level.name)
-def test_every_result_has_the_same_bytes_with_another_libm(level, plain):
-    made = made_at(level)
-    assert made["level"]["libm"] != plain["level"]["libm"]
+    assert level.took_effect(made["level"], plain["level"])
     assert made["digests"] == plain["digests"]
