@@ -14,6 +14,8 @@ NUMPY = re.compile(
     r"polynomial|polyfit|convolve|correlate|cov|corrcoef|sinc|angle|(log|geom)space"
 )
 MATH = re.compile(ELEMENTARY)
+# Equal keys come out in an order that depends on the instruction set as well.
+SORTS = {"argsort", "argpartition"}
 # Of SciPy's solvers only what wraps a function as an operator is free.
 WRAPPERS = {"LinearOperator", "aslinearoperator"}
 SCIPY = ("linalg", "sparse.linalg", "special", "optimize", "interpolate", "fft", "stats", "signal")
@@ -104,7 +106,17 @@ class Calls(ast.NodeVisitor):
             for keyword in node.keywords:
                 if keyword.arg == "optimize":
                     self.note("einsum(optimize=)", node)
+        if isinstance(node.func, ast.Attribute) and node.func.attr in SORTS and not is_stable(node):
+            self.note(node.func.attr, node)
         self.generic_visit(node)
+
+
+def is_stable(sort):
+    """Tell whether the call of a sort asks for a stable one."""
+    return any(
+        keyword.arg == "kind" and getattr(keyword.value, "value", None) == "stable"
+        for keyword in sort.keywords
+    )
 
 
 def is_exact(base, exponent):

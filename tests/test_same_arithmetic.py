@@ -3,6 +3,7 @@
 BLAS and LAPACK, NumPy's loops of exp, log and power, and the C library's own, are chosen when the
 process runs, by the instructions that the CPU has, and round differently. Python's ``**`` of floats
 is the C library's ``pow``, even for squares; ``numpy.square`` and products are plain arithmetic.
+Sorts that are not stable are chosen in the same way, and leave equal keys in different orders.
 """
 
 import ast
@@ -104,6 +105,9 @@ def test_the_core_takes_its_elementary_functions_from_one_file():
         ("x **= 3", "**"),
         ("pow(x, 2)", "**"),
         ("import numpy as np; np.einsum('ij,jk', a, b, optimize=True)", "einsum(optimize=)"),
+        ("import numpy as np; np.argsort(x)", "argsort"),
+        ("x.argsort(kind='quicksort')", "argsort"),
+        ("import numpy as np; np.argpartition(x, 3)", "argpartition"),
     ],
 )
 def test_what_rounds_by_the_cpu_is_seen(line, what):
@@ -119,6 +123,7 @@ def test_what_rounds_by_the_cpu_is_seen(line, what):
         "from scipy.sparse.linalg import LinearOperator, aslinearoperator",
         "import scipy; scipy.sparse.csr_array(a)",
         "import math; math.sqrt(x) + math.ldexp(1.0, 3) + math.floor(x)",
+        "import numpy as np; np.argsort(x, kind='stable'); x.argsort(axis=1, kind='stable')",
         "2**63 - 10**3 + 2.0**29",
         "f(**options)",
         "log = np_log = self.exp(x)",

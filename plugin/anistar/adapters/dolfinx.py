@@ -94,9 +94,9 @@ def _mesh_tags(domain: Any, simplices: NDArray[np.int32], tags: NDArray[np.int32
     known = _entities(domain, dim)
     encoder = RowKeys(known, len(domain.geometry.x))
     keys, wanted = encoder.encode(known), encoder.encode(simplices)
-    order = np.argsort(keys)
+    order = np.argsort(keys, kind="stable")
     rows = order[np.searchsorted(keys[order], wanted)]
-    ascending = np.argsort(rows)
+    ascending = np.argsort(rows, kind="stable")
     return dolfinx.mesh.meshtags(domain, dim, rows[ascending].astype(np.int32), tags[ascending])
 
 

@@ -151,7 +151,7 @@ def _rows_of(table: NDArray[np.int32], facets: NDArray[np.int32], n: int) -> NDA
     """Return the row of each facet in a table of all facets."""
     encoder = RowKeys(table, n)
     keys = encoder.encode(table)
-    order = np.argsort(keys)
+    order = np.argsort(keys, kind="stable")
     found = np.searchsorted(keys[order], encoder.encode(facets))
     return np.asarray(order[found], dtype=np.int64)
 

@@ -46,7 +46,7 @@ class Strata:
         keys, wanted = encoder.encode(table), encoder.encode(simplices)
         if len(keys) == 0:
             return np.full(len(wanted), -1)
-        order = np.argsort(keys)
+        order = np.argsort(keys, kind="stable")
         found = order[np.searchsorted(keys[order], wanted).clip(max=len(keys) - 1)]
         return np.where(keys[found] == wanted, found, -1)
 
