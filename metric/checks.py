@@ -119,7 +119,7 @@ def check_result(M: NDArray[np.float64], operation: str) -> NDArray[np.float64]:
     MetricError
         If a tensor is not finite or not positive definite in double precision.
     """
-    bad = _not_finite(M.reshape(len(M), -1))
+    bad = _not_finite(M.reshape(len(M), M.shape[1] * M.shape[2]))
     if bad.size:
         raise MetricError(
             f"{operation} gave a tensor that is not finite at point {bad[0]}: "
@@ -188,7 +188,7 @@ def check_tensors(
         raise MetricError(f"{name} is {tensors.shape[1]}-dimensional but the mesh has dim {dim}")
     if n_points is not None and len(tensors) != n_points:
         raise MetricError(f"{name} has {len(tensors)} tensors but the mesh has {n_points} points")
-    flat = tensors.reshape(len(tensors), -1)
+    flat = tensors.reshape(len(tensors), tensors.shape[1] * tensors.shape[2])
     bad = _not_finite(flat)
     if bad.size:
         value = flat[bad[0]][~np.isfinite(flat[bad[0]])][0]

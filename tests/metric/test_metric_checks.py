@@ -39,6 +39,14 @@ def test_a_wrong_shape_is_named(shape):
         metric.check_metric(np.ones(shape))
 
 
+@pytest.mark.parametrize("d", [2, 3])
+def test_no_tensors_are_a_metric_of_no_points(d):
+    none = np.empty((0, d, d))
+    assert metric.check_metric(none).shape == none.shape
+    assert metric.exp_metric(metric.log_metric(none)).shape == none.shape
+    assert metric.intersected(none, none).shape == none.shape
+
+
 def test_a_metric_that_does_not_fit_the_mesh_is_named():
     mesh = box(2, 2)
     with pytest.raises(metric.MetricError, match="has 8 tensors but the mesh has 9 points"):
