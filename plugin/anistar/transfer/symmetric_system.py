@@ -57,7 +57,11 @@ class SymmetricSystem:
             rows, starts, residual=RESIDUAL, max_steps=self.max_steps
         )
         for stop, residual in zip(stops, residuals, strict=True):
-            if stop not in ("solved", "least_squares") and not residual <= ACCEPTED:
+            if stop == "not_finite":
+                raise MeshingError(
+                    f"a system of {len(right)} unknowns came upon numbers that are not finite"
+                )
+            if stop == "step_limit" and not residual <= ACCEPTED:
                 raise MeshingError(
                     f"a system of {len(right)} unknowns was not solved in {self.max_steps} steps: "
                     f"residual {residual:.1e}"
