@@ -13,7 +13,8 @@ from .errors import MeshingError
 from .memory import available_memory
 from .mesh import Mesh
 from .metric import MetricOptions, complexity
-from .metric.complexity import REAL_ELEMENTS_PER_COMPLEXITY
+from .metric.complexity import REAL_ELEMENTS_PER_COMPLEXITY, integral_of_exponential
+from .metric.kernels.elementary import log
 from .remesh_options import RemeshOptions
 from .topology import cell_volumes
 
@@ -57,7 +58,7 @@ def check_demand(mesh: Mesh, metric: Floats, scale: float, options: RemeshOption
         densest = float(np.sqrt(np.einsum("nii->ni", metric)).prod(axis=1).max())
         n_vertices = vertices_for(densest * float(extents.prod()), mesh.dim)
         divided = ~np.isin(mesh.facet_tags, np.array(options.frozen_tags, dtype=np.int32))
-        along = float(_metric_measures(mesh.facets[divided], mesh.points * scale, metric).sum())
+        along = _on_facets(mesh.points * scale, mesh.facets[divided], metric)
     if fits(max(n_vertices, along), mesh.dim, options):
         return
     with np.errstate(over="ignore"):
@@ -158,17 +159,21 @@ def _told(n_bytes: float) -> str:
     return f"{told:.3g} PB"
 
 
-def _metric_measures(facets: NDArray[np.int32], points: Floats, metric: Floats) -> Floats:
-    """Return how many vertices each facet asks for by its length or area in the metric.
+def _on_facets(points: Floats, facets: NDArray[np.int32], metric: Floats) -> float:
+    """Return how many vertices facets ask for by their lengths or areas in the metric.
 
-    Where the domain is thinner than the cells, it is the facets that decide.
+    Where the domain is thinner than the cells, it is the facets that decide. As in the mesher
+    sizes are interpolated by their logarithms: a mean of the metrics would count the finest
+    corner of a long facet for half of it.
     """
+    k, dim = facets.shape
     corners = points[facets]
-    M = metric[facets].mean(axis=1)
     edges = corners[:, 1:] - corners[:, :1]
-    gram = np.einsum("kai,kij,kbj->kab", edges, M, edges)
-    if points.shape[1] == 2:
-        return np.asarray(np.sqrt(gram[:, 0, 0]))
-    square = gram[:, 0, 0] * gram[:, 1, 1] - np.square(gram[:, 0, 1])
-    area = 0.5 * np.sqrt(np.maximum(square, 0.0))
-    return np.asarray(vertices_for(1.0, 2) * area)
+    gram = np.einsum("kai,kcij,kbj->kcab", edges, metric[facets], edges)
+    square = gram[..., 0, 0]
+    if dim == 3:
+        square = 0.25 * (square * gram[..., 1, 1] - np.square(gram[..., 0, 1]))
+    exponent = 0.5 * log(np.maximum(square, np.finfo(np.float64).tiny)).ravel()
+    rows = np.arange(k * dim, dtype=np.int32).reshape(k, dim)
+    measure = integral_of_exponential(rows, np.ones(k), exponent)
+    return measure if dim == 2 else vertices_for(measure, 2)

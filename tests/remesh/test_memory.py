@@ -136,3 +136,13 @@ def test_a_large_determinant_in_one_corner_is_no_large_mesh():
 def test_a_max_memory_that_is_no_number_of_bytes_is_refused(value):
     with pytest.raises(ValueError, match=re.escape(f"max_memory must be positive, got {value}")):
         RemeshOptions(max_memory=value)
+
+
+def test_one_fine_corner_does_not_count_for_the_whole_of_its_facets():
+    # along the sides the sizes go from 1 to 1e-7 as their logarithms do: 1e7 / log(1e7) edges
+    mesh = square(1)
+    M = np.tile(np.eye(2), (4, 1, 1))
+    M[0] = np.diag([1.0, 1e14])
+    message = r"the metric asks for about 6\.2e\+05 vertices"
+    with pytest.raises(MeshingError, match=message):
+        remesh(mesh, M, RemeshOptions(max_memory=1e8))
