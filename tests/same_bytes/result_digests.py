@@ -15,6 +15,8 @@ import anistar
 from anistar import metric
 from anistar.mesh import Mesh
 from anistar.metric import MetricOptions
+from anistar.quality import mean_ratios
+from anistar.remesh import RemeshOptions
 from anistar.transfer import METHODS
 
 
@@ -26,8 +28,8 @@ def digest(*arrays):
     return found.hexdigest()[:16]
 
 
-def box(dim, n):
-    """A simplicial grid of the unit square or cube whose inner points are moved a little."""
+def box(dim, n, moved=0.2):
+    """A simplicial grid of the unit square or cube; inner points are `moved` times a step."""
     axes = np.meshgrid(*[np.arange(n + 1) / n] * dim, indexing="ij")
     points = np.stack([axis.ravel() for axis in axes], axis=1)
     strides = (n + 1) ** np.arange(dim)[::-1]
@@ -42,7 +44,7 @@ def box(dim, n):
     cells[_volumes(points, cells) < 0, :2] = cells[_volumes(points, cells) < 0, 1::-1]
     inner = np.all((points > 0) & (points < 1), axis=1)
     rng = np.random.default_rng(7)
-    points[inner] += rng.uniform(-0.2 / n, 0.2 / n, (int(inner.sum()), dim))
+    points[inner] += rng.uniform(-moved / n, moved / n, (int(inner.sum()), dim))
     right = points[cells].mean(axis=1)[:, 0] > 0.5
     return Mesh(points=points, cells=cells, cell_tags=np.where(right, 2, 1))
 
@@ -136,6 +138,37 @@ def adapted(mesh, u, target):
     return found
 
 
+def rounded(dim):
+    """A disc or a ball: the grid of a box drawn in along rays, by arithmetic and a square root."""
+    mesh = box(dim, 10 if dim == 2 else 5, moved=0.0)
+    x = 2.0 * mesh.points - 1.0
+    length = np.sqrt((x * x).sum(axis=1))
+    x *= (np.abs(x).max(axis=1) / np.maximum(length, 1e-12))[:, None]
+    return Mesh(points=x, cells=mesh.cells)
+
+
+def curved(dim):
+    """Digests of a mesh with a curved boundary, with and without everything that may be asked."""
+    mesh = rounded(dim)
+    M = metric.from_sizes(0.08 + 0.1 * np.abs(mesh.points[:, :1]) * np.ones(dim))
+    M[:, 0, 0] *= 4.0
+    asked = RemeshOptions(agreement=True, until_consistent=True, threads=2, max_vertices=4000)
+    onto = {"plain": (None, RemeshOptions()), "asked": (None, asked)}
+    onto["projected"] = (unit_length, RemeshOptions())
+    found = {}
+    for name, (project, options) in onto.items():
+        done = anistar.remesh(mesh, M, options, project=project)
+        new = done.mesh
+        found[f"curved {name}"] = digest(new.points, new.cells, new.facets, done.metric)
+        found[f"quality {name}"] = digest(mean_ratios(new, done.metric))
+    return found
+
+
+def unit_length(points, tag):
+    """Project onto the unit circle or sphere."""
+    return points / np.sqrt((points * points).sum(axis=1, keepdims=True))
+
+
 def flat(tree):
     """Numbers of nested dicts and lists."""
     if isinstance(tree, dict):
@@ -149,7 +182,7 @@ def digests(dim):
     """Return the digest of every result in one dimension."""
     mesh = box(dim, 12 if dim == 2 else 6)
     u = layer(mesh.points)
-    found = recovered(mesh, u) | made_metrics(mesh, u) | adapted(mesh, u, 400.0)
+    found = recovered(mesh, u) | made_metrics(mesh, u) | adapted(mesh, u, 400.0) | curved(dim)
     return {f"{dim}D {name}": value for name, value in found.items()}
 
 
