@@ -22,6 +22,9 @@ LARGEST_RATIO = 1e14
 Rounding the entries of a tensor moves its eigenvalues by some 1e-16 of the largest one. At this
 ratio the smallest one keeps two digits, and its sign in every formula."""
 
+ROUNDED = 1.0 + 1e-8
+"""Sizes whose ratio is the largest allowed are squared and divided, and must pass."""
+
 LARGEST_ENTRY = {2: 1e140, 3: 1e60}
 """Bound of the largest entry of a metric, and of its inverse, by dimension.
 
@@ -151,7 +154,7 @@ def _singular(tensors: NDArray[np.float64]) -> NDArray[np.intp]:
     """Points whose tensor is not positive definite in double precision."""
     values = eigenvalues(tensors)
     smallest, largest = values[:, 0], values[:, -1]
-    return np.flatnonzero(~((smallest > 0.0) & (largest <= LARGEST_RATIO * smallest)))
+    return np.flatnonzero(~((smallest > 0.0) & (largest <= ROUNDED * LARGEST_RATIO * smallest)))
 
 
 def _what_is_wrong(values: NDArray[np.float64]) -> str:

@@ -16,7 +16,7 @@ Project = Callable[[NDArray[np.float64], int], ArrayLike]
 #: A point is projected from the smooth curve or surface through the points of the geometry. One
 #: that goes further than this fraction of the extent of the domain does not land on the same
 #: boundary.
-FARTHEST = 0.25
+FARTHEST = 0.5
 
 #: What has landed stays: projected again, a point moves at most by this fraction of the first
 #: move, as an iteration that converges does, or this fraction of the extent.

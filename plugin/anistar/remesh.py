@@ -67,7 +67,7 @@ def remesh(
         are those of `mesh`, and the geometry gives the shape of the curved ones.
     project : callable, optional
         ``project(points, facet_tag)`` moves new points of curves, in 3D of curved surfaces, onto
-        the true geometry: by at most a quarter of the extent of the domain, and so that a point
+        the true geometry: by at most half of the extent of the domain, and so that a point
         that is projected again stays. In 3D ridges keep to the curve through the points of the
         geometry.
 

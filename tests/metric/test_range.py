@@ -159,3 +159,10 @@ def test_weights_far_beyond_one_are_refused_by_the_name_of_the_operation():
         metric.MetricError, match=r"that the interpolation gave at point 0 is out of range"
     ):
         metric.interpolated(M, np.array([[-50.0, 51.0]]))
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_sizes_with_the_largest_ratio_that_is_allowed_make_a_metric(dim):
+    sizes = np.random.default_rng(0).uniform(0.1, 10.0, (100, 1)) * np.ones((1, dim))
+    sizes[:, -1] *= 1e-7
+    assert metric.check_metric(metric.from_sizes(sizes)).shape == (100, dim, dim)

@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..fields import Field
-from ..metric import exp_metric, log_metric
-from ..metric.algebra import eigenvalues
+from ..metric.algebra import eigenvalues, exp_metric, log_metric
 from ..topology import Float
 
 
