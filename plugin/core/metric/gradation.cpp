@@ -62,7 +62,7 @@ bool is_clearly_below(const SymmetricTensor<d> &N, const SymmetricTensor<d> &M) 
 /// Whether the density of a raised metric grew, by the pivots of its factor. Round-off
 /// eats what is added far below the largest eigenvalue: the same would be asked again
 /// and again. What grows each time comes to an end, and soon where the growth is no
-/// round-off of the smallest eigenvalue, which neighbours would hand to and fro.
+/// round-off of the smallest eigenvalue, which neighbours would hand to each other.
 template <std::size_t d>
 bool is_denser(const SymmetricTensor<d> &raised, const SymmetricTensor<d> &before,
                double tolerance) {
