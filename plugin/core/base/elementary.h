@@ -142,11 +142,14 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// @pre |angle| is at most some hundred turns.
+/// NaN of angles that are not finite, or beyond a quarter of a million turns.
 [[nodiscard]] inline SineCosine sine_cosine(double angle) {
-  // pi / 2 in two parts; products of the first with small integers are exact
+  // pi / 2 in two parts; products of the first with integers below `largest` are exact
   constexpr double quarter = 0x1.921fb544p+0, quarter_rest = 0x1.0b4611a626331p-34;
+  constexpr double largest = 0x1p20, none = std::numeric_limits<double>::quiet_NaN();
   const double turns = std::nearbyint(angle * (2 / std::numbers::pi));
+  if (!(std::abs(turns) < largest))
+    return {none, none};
   const double r = (angle - turns * quarter) - turns * quarter_rest;
   const double square = r * r;
   // Taylor series; |r| <= pi / 4, so that the first terms left out are below 1e-17
