@@ -22,8 +22,9 @@ LARGEST_RATIO = 1e14
 Rounding the entries of a tensor moves its eigenvalues by some 1e-16 of the largest one. At this
 ratio the smallest one keeps two digits, and its sign in every formula."""
 
-ROUNDED = 1.0 + 1e-8
-"""Sizes whose ratio is the largest allowed are squared and divided, and must pass."""
+ROUNDED = 1.1
+"""Rounding the entries of a tensor with the largest ratio moves its small eigenvalue by up to 4 %:
+what is made of metrics, by interpolation say, must be taken for a metric again."""
 
 LARGEST_ENTRY = {2: 1e140, 3: 1e60}
 """Bound of the largest entry of a metric, and of its inverse, by dimension.

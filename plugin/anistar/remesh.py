@@ -74,8 +74,7 @@ def remesh(
     Returns
     -------
     Remeshed
-        Its metric is interpolated by logarithms. Where eigenvalues would differ by more than
-        8e13, close to the 1e14 that a metric may have, the smaller ones are raised to that.
+        Its metric is interpolated by logarithms.
 
     Raises
     ------

@@ -8,10 +8,11 @@
 
 namespace anistar {
 
-/// The eigenvalues of an interpolated metric differ by at most e^32 = 7.9e13, a little
-/// less than those of a metric that is given may (1e14): interpolation adds nothing to
-/// the range of the logarithms, but round-off does, and the result must be a metric.
-inline constexpr double largest_range = 32;
+/// The eigenvalues of an interpolated metric differ by at most e^32.28 = 1.05e14.
+/// Interpolation adds nothing to the range of the logarithms of metrics, which is that
+/// of 1e14, but round-off does, by up to 4 %: what is raised here is no more than that,
+/// and the result is taken for a metric again, as the door leaves 10 % to round-off.
+inline constexpr double largest_range = 32.28;
 
 /// exp L, for logarithms L of eigenvalues no further apart than `largest_range`; else
 /// the smaller ones are raised.
