@@ -59,33 +59,13 @@ def sqrt_metric(M: Array) -> Array:
 
 
 def absolute(H: Array, floor: ArrayLike = 0.0) -> Array:
-    """Return ``|H|``: the absolute values of the eigenvalues of `H`, at least `floor`.
-
-    Parameters
-    ----------
-    H : ndarray (n, d, d)
-        Symmetric tensors.
-    floor : float or ndarray (n,)
-        Lower bound of the eigenvalues of the result, in the unit of `H`.
-    """
+    """Return ``|H|`` of checked tensors (n, d, d), see `tensor_functions.absolute`."""
     bound = np.asarray(floor, dtype=np.float64).reshape(-1, 1)
     return spectral(H, lambda values: np.maximum(np.abs(values), bound))
 
 
 def interpolated(M: Array, weights: Array) -> Array:
-    """Log-Euclidean interpolation of metrics.
-
-    Parameters
-    ----------
-    M : ndarray (m, k, d, d)
-        k metrics for each of m places.
-    weights : ndarray (m, k)
-        Barycentric weights, each row with sum one.
-
-    Returns
-    -------
-    ndarray (m, d, d)
-    """
+    """Interpolate checked metrics (m, k, d, d), see `tensor_functions.interpolated`."""
     m, k, d, _ = M.shape
     logs = log_metric(M.reshape(m * k, d, d)).reshape(m, k, d, d)
     return exp_metric(np.einsum("mk,mkij->mij", weights, logs))

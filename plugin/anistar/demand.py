@@ -93,7 +93,10 @@ def check_targets(
         most = min(most, metric.max_elements / REAL_ELEMENTS_PER_COMPLEXITY[mesh.dim])
     for target in complexities:
         n_vertices = vertices_for(min(target, most), mesh.dim)
-        refuse(n_vertices, mesh.dim, options, f"the target complexity {target:g}")
+        what = f"the target complexity {target:g}"
+        if metric.target_elements is not None:
+            what += f" (target_elements is {metric.target_elements:g})"
+        refuse(n_vertices, mesh.dim, options, what)
 
 
 def _densest(mesh: Mesh, h_min: Any) -> float:

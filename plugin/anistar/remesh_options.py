@@ -84,6 +84,8 @@ class RemeshOptions:
             raise ValueError(f"max_vertices must be at least 3, got {self.max_vertices}")
         if self.max_seconds is not None and not self.max_seconds > 0:
             raise ValueError(f"max_seconds must be positive, got {self.max_seconds}")
+        if isinstance(self.max_memory, str):
+            raise TypeError(f"max_memory must be a number of bytes, got {self.max_memory!r}")
         if self.max_memory is not None and not self.max_memory > 0:
             raise ValueError(f"max_memory must be positive, got {self.max_memory}")
         if not 0 < self.ridge_angle <= 180:

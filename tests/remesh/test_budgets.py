@@ -146,8 +146,8 @@ def test_the_clock_is_looked_at_between_two_splits_of_curves_that_are_projected(
     options = RemeshOptions(max_seconds=1.5, until_consistent=True)
     done = remesh(mesh, uniform(mesh, 0.02), options, project=project)
     assert validate(done.mesh, mesh, tolerance=0.02) == []
-    assert done.report.stop_reason in ("max_seconds", "finished")
-    assert len(calls) < 4000
+    assert done.report.stop_reason == "max_seconds"
+    assert 3000 < len(calls) < 4000
 
 
 def test_the_callback_hears_every_phase_in_order():

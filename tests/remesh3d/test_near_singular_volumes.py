@@ -5,11 +5,11 @@ from importlib import import_module
 import numpy as np
 import pytest
 from meshes import cube
-from remesh.test_near_singular import near_singular, opened_door, outcome
+from remesh.test_near_singular import ENTRIES, near_singular, opened_door, outcome
 from remesh3d.domains import changed, uniform
 
 import anistar
-from anistar import MeshingError, RemeshOptions, certify, remesh, transfer, validate
+from anistar import MeshingError, RemeshOptions, certify, remesh, validate
 from anistar.metric import MetricError, check_metric
 from anistar.quality import quality
 
@@ -25,17 +25,6 @@ def test_what_the_door_lets_through_gives_a_valid_mesh_with_a_metric(seed):
     assert np.array_equal(check_metric(done.metric), done.metric)
     assert np.isfinite(certify(done.mesh, done.metric).distortion).all()
     assert quality(done.mesh, done.metric).worst_quality > 0
-
-
-ENTRIES = {
-    "remesh": lambda mesh, M: remesh(mesh, M, RemeshOptions(max_vertices=200)),
-    "certify": certify,
-    "explain_star": lambda mesh, M: anistar.explain_star(mesh, M, 4),
-    "quality": quality,
-    "transfer": lambda mesh, M: transfer(
-        mesh, {"M": anistar.Field(M, kind="tensor")}, mesh, anistar.TransferOptions()
-    ),
-}
 
 
 @pytest.mark.parametrize("name", ENTRIES)
