@@ -9,7 +9,6 @@ from meshes import cube, square
 from remesh3d import domains
 from shapes import angles, fan, on_circle, uniform
 
-import anistar
 from anistar import demand, memory
 from anistar.errors import MeshingError
 from anistar.remesh import RemeshOptions, remesh
@@ -152,11 +151,3 @@ def test_one_fine_corner_does_not_count_for_the_whole_of_its_facets():
 def test_a_max_memory_in_letters_is_no_number():
     with pytest.raises(TypeError, match="max_memory must be a number of bytes, got '1e9'"):
         RemeshOptions(max_memory="1e9")
-
-
-def test_a_target_in_elements_is_named_as_it_was_given():
-    mesh = square(2)
-    u = mesh.points[:, 0] ** 2
-    options = anistar.AdaptOptions.from_dict({"target_elements": 1e12})
-    with pytest.raises(MeshingError, match=r"\(target_elements is 1e\+12\) asks for about"):
-        anistar.adapt(mesh, {"u": u}, options)
