@@ -146,7 +146,11 @@ def _call_core(
     options: RemeshOptions,
     scale: float,
 ) -> dict[str, Any]:
-    """Remesh in scaled coordinates, as the metric is already; what comes back is scaled."""
+    """Remesh in scaled coordinates, as the metric is already; what comes back is scaled.
+
+    The core knows regions by their rank, so that every tag is one, and -1 the outside.
+    """
+    regions, ranks = np.unique(geometry.cell_tags, return_inverse=True)
     with meshing_errors(scale):
         raw: dict[str, Any] = _core.remesh2(
             mesh.points * scale,
@@ -154,7 +158,7 @@ def _call_core(
             metric,
             geometry.points * scale,
             geometry.cells,
-            geometry.cell_tags,
+            ranks.astype(np.int32),
             geometry.facets,
             geometry.facet_tags,
             geometry.corners,
@@ -164,6 +168,7 @@ def _call_core(
             None if project is None else pointwise(project, geometry, scale),
             options.callback,
         )
+    raw["cell_tags"] = regions[raw["cell_tags"]]
     return raw
 
 

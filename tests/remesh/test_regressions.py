@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from meshes import grid, square
+from meshes import grid, square, two_region_cube, two_regions
 
 import anistar
 from anistar.mesh import Mesh
 from anistar.remesh import RemeshOptions
+from anistar.topology import cell_volumes, measure_by_tag
 
 
 def sizes(mesh, h):
@@ -179,3 +180,18 @@ def test_a_mesh_is_never_refused_as_its_own_geometry():
     mesh = Mesh(points=points, cells=[[0, 1, 2], [0, 2, 3], [0, 3, 4]])
     done = anistar.remesh(mesh, sizes(mesh, 0.1))
     assert anistar.validate(done.mesh) == []
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("tag", [-(2**31), -2, -1, 0])
+def test_any_tag_is_a_region(dim, tag):
+    # -1 was the core's mark for what lies outside
+    given = (two_regions if dim == 2 else two_region_cube)()
+    tags = np.where(given.cell_tags == given.cell_tags[0], tag, 7).astype(np.int32)
+    mesh = Mesh(**{**given.arrays(), "cell_tags": tags, "names": {}})
+    new = anistar.remesh(mesh, np.tile(np.eye(dim) / 0.2**2, (mesh.n_points, 1, 1))).mesh
+    assert anistar.validate(new, mesh) == []
+    before, after = (
+        measure_by_tag(cell_volumes(m.points, m.cells), m.cell_tags) for m in (mesh, new)
+    )
+    assert after == pytest.approx(before)
