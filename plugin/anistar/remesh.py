@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,7 @@ from . import _core
 from .contact import check_curves
 from .core_errors import meshing_errors
 from .demand import check_demand
+from .fidelity import flat_shape, smooth_shape, surface_deviations, tag_measures
 from .mesh import Mesh
 from .metric import check_metric
 from .options import require
@@ -24,6 +26,8 @@ from .volume_remesh import check_surfaces, remesh_volume
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,11 +124,20 @@ def remesh(
         names={**mesh.names, **geometry.names},
         **ridges,
     )
-    report = report_of(raw, geometry, new, has_ridges=len(mesh.edges) > 0)
+    is_curved = mesh.dim == 2 or raw["counts"]["curved"] > 0
+    shape = smooth_shape(geometry, options) if is_curved else flat_shape(geometry)
+    report = report_of(
+        raw,
+        new,
+        tags=tag_measures(geometry, shape, new, has_ridges=len(mesh.edges) > 0),
+        deviations=() if project else surface_deviations(geometry, shape, new),
+    )
     if mesh.dim == 2:
         check_curves(new, report)
-    elif report.counts["curved"]:
+    elif is_curved:
         check_surfaces(new, report)
+    for warning in report.warnings:
+        _log.warning("%s", warning)
     return Remeshed(new, metric, report)
 
 

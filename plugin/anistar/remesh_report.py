@@ -7,25 +7,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from .bad_cells import BAD_QUALITY, BadCell, worst_cells
-from .errors import MeshingError
+from .fidelity import SurfaceDeviation, TagMeasure, shape_warnings
 from .mesh import Mesh
-from .topology import cell_volumes, edge_lengths, facet_measures, measure_by_tag
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TagMeasure:
-    """Length, area or volume that a tag carries, in the geometry and in the new mesh."""
-
-    dim: int
-    tag: int
-    name: str
-    before: float
-    after: float
-
-    @property
-    def change(self) -> float:
-        """Relative change of the measure."""
-        return self.after / self.before - 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,7 +46,14 @@ class RemeshReport:
     distortion : dict of str to float
         Quantiles of ln gamma, the distortion of the metric along the edges.
     tags : tuple of TagMeasure
-        Measure of every facet and region tag against the geometry.
+        Measure of every facet and region tag against the geometry and against the smooth shape
+        through its points.
+    deviations : tuple of SurfaceDeviation
+        How far the new vertices of curves and curved surfaces lie from the given facets, for every
+        facet tag; empty where all are straight.
+    warnings : tuple of str
+        Where the shape of the new mesh may not be what is meant: a deviation that no smooth shape
+        has, or a measure that changed by more than 1 %.
     counts : dict of str to float
         Operations made; ``consistency_moves`` are the vertices that Algorithm 2 moved in 3D;
         ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
@@ -88,29 +78,28 @@ class RemeshReport:
     star_ok: float | None
     distortion: dict[str, float]
     tags: tuple[TagMeasure, ...]
+    deviations: tuple[SurfaceDeviation, ...]
+    warnings: tuple[str, ...]
     counts: dict[str, float]
     seconds: dict[str, float]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the report as JSON builtins."""
         out = asdict(self)
-        out["tags"] = [{**asdict(tag), "change": tag.change} for tag in self.tags]
+        out["tags"] = [tag.as_dict() for tag in self.tags]
+        out["deviations"] = [{**asdict(it), "place": list(it.place)} for it in self.deviations]
+        out["warnings"] = list(self.warnings)
         out["bad_cells"] = [{**asdict(bad), "place": list(bad.place)} for bad in self.bad_cells]
         return out
 
 
 def report_of(
-    raw: Mapping[str, Any], geometry: Mesh, new: Mesh, has_ridges: bool = False
+    raw: Mapping[str, Any],
+    new: Mesh,
+    tags: tuple[TagMeasure, ...],
+    deviations: tuple[SurfaceDeviation, ...],
 ) -> RemeshReport:
-    """Return the report on what the core returned.
-
-    The ridges of the geometry count only if the mesh that was remeshed had some.
-
-    Raises
-    ------
-    MeshingError
-        If a tag of the geometry is gone.
-    """
+    """Return the report on what the core returned, and on its shape beside the geometry."""
     n_bad: int = 0
     bad: tuple[BadCell, ...] = ()
     if not raw["statistics"]["q_min"] >= BAD_QUALITY:
@@ -129,32 +118,9 @@ def report_of(
         simplex_ok=raw["simplex_ok"],
         star_ok=raw["star_ok"],
         distortion=raw["distortion"],
-        tags=tag_measures(geometry, new, has_ridges),
+        tags=tags,
+        deviations=deviations,
+        warnings=shape_warnings(tags, deviations),
         counts=raw["counts"],
         seconds=raw["seconds"],
     )
-
-
-def tag_measures(geometry: Mesh, new: Mesh, has_ridges: bool = False) -> tuple[TagMeasure, ...]:
-    """Compare what every tag carries; a tag that is gone is an error."""
-    found = []
-    kinds: tuple[tuple[int, str], ...] = ((geometry.dim - 1, "facet"), (geometry.dim, "cell"))
-    if geometry.dim == 3 and has_ridges:
-        kinds = ((1, "edge"), *kinds)
-    for dim, kind in kinds:
-        before, after = (_measures(mesh, kind) for mesh in (geometry, new))
-        lost = sorted(set(before) - set(after))
-        if lost:
-            raise MeshingError(f"the new mesh lost {kind} tag {lost[0]}")
-        for tag, measure in before.items():
-            name = geometry.names.get((dim, tag), "")
-            found.append(TagMeasure(dim=dim, tag=tag, name=name, before=measure, after=after[tag]))
-    return tuple(found)
-
-
-def _measures(mesh: Mesh, kind: str) -> dict[int, float]:
-    if kind == "edge":
-        return measure_by_tag(edge_lengths(mesh.points, mesh.edges), mesh.edge_tags)
-    if kind == "facet":
-        return measure_by_tag(facet_measures(mesh.points, mesh.facets), mesh.facet_tags)
-    return measure_by_tag(cell_volumes(mesh.points, mesh.cells), mesh.cell_tags)

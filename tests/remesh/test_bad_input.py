@@ -9,10 +9,10 @@ from shapes import uniform
 
 from anistar.consistency import ConsistencyOptions
 from anistar.errors import MeshingError
+from anistar.fidelity import flat_shape, tag_measures
 from anistar.mesh import Mesh
 from anistar.metric import MetricError
 from anistar.remesh import RemeshOptions, remesh
-from anistar.remesh_report import tag_measures
 
 
 def damaged(index, tensor):
@@ -126,7 +126,7 @@ def test_a_mesh_that_lost_a_tag_is_an_error(kind, changes):
     lost = dict(mesh.arrays())
     lost[changes] = np.zeros_like(lost[changes])
     with pytest.raises(MeshingError, match=f"the new mesh lost {kind} tag "):
-        tag_measures(mesh, Mesh._trusted(**lost))
+        tag_measures(mesh, flat_shape(mesh), Mesh._trusted(**lost), has_ridges=False)
 
 
 def test_a_geometry_that_is_another_domain_is_refused_with_a_place():

@@ -9,6 +9,7 @@ void bind_certify(nanobind::module_ &module);
 void bind_combination(nanobind::module_ &module);
 void bind_elementary(nanobind::module_ &module);
 void bind_facet_pairs(nanobind::module_ &module);
+void bind_facet_shapes(nanobind::module_ &module);
 void bind_gradation(nanobind::module_ &module);
 void bind_locator(nanobind::module_ &module);
 void bind_nearest(nanobind::module_ &module);

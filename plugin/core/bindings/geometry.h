@@ -38,6 +38,14 @@ template <std::size_t d>
   return {reinterpret_cast<const Facet<d> *>(array.data()), array.shape(0)};
 }
 
+[[nodiscard]] inline std::span<const std::array<Index, 2>>
+pairs_of(const Array2<Index> &edges) {
+  if (edges.shape(1) != 2)
+    throw std::invalid_argument("edges have " + std::to_string(edges.shape(1)) +
+                                " columns, expected 2");
+  return {reinterpret_cast<const std::array<Index, 2> *>(edges.data()), edges.shape(0)};
+}
+
 [[nodiscard]] inline std::span<const Index> indices_of(const Array1<Index> &array) {
   return {array.data(), array.shape(0)};
 }

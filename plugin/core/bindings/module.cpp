@@ -6,6 +6,7 @@ NB_MODULE(_core, module) {
   anistar::bindings::bind_combination(module);
   anistar::bindings::bind_elementary(module);
   anistar::bindings::bind_facet_pairs(module);
+  anistar::bindings::bind_facet_shapes(module);
   anistar::bindings::bind_gradation(module);
   anistar::bindings::bind_locator(module);
   anistar::bindings::bind_nearest(module);

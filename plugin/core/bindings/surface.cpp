@@ -14,18 +14,14 @@ namespace {
                                     const Array2<Index> &edges,
                                     const Array1<Index> &edge_tags,
                                     const Array1<Index> &corners, double ridge_angle) {
-  if (edges.shape(1) != 2)
-    throw std::invalid_argument("edges have " + std::to_string(edges.shape(1)) +
-                                " columns, expected 2");
-  return {
-      points_of<3>(points),
-      facets_of<3>(facets),
-      indices_of(facet_tags),
-      {reinterpret_cast<const std::array<Index, 2> *>(edges.data()), edges.shape(0)},
-      indices_of(edge_tags),
-      indices_of(corners),
-      {},
-      ridge_angle};
+  return {points_of<3>(points),
+          facets_of<3>(facets),
+          indices_of(facet_tags),
+          pairs_of(edges),
+          indices_of(edge_tags),
+          indices_of(corners),
+          {},
+          ridge_angle};
 }
 
 /// Feet and normals, row by row.

@@ -10,14 +10,6 @@
 namespace anistar::bindings {
 namespace {
 
-[[nodiscard]] std::span<const std::array<Index, 2>>
-edges_of(const Array2<Index> &array) {
-  if (array.shape(1) != 2)
-    throw std::invalid_argument("edges have " + std::to_string(array.shape(1)) +
-                                " columns, expected 2");
-  return {reinterpret_cast<const std::array<Index, 2> *>(array.data()), array.shape(0)};
-}
-
 [[nodiscard]] SurfaceProjection surface_projection_of(nb::handle project) {
   if (project.is_none())
     return {};
@@ -43,12 +35,12 @@ remesh3(const Array2<double> &points, const Array2<Index> &cells,
   const VolumeInput input{cells_of<3>(cells),
                           indices_of(cell_tags),
                           {points_of<3>(points), facets_of<3>(facets),
-                           indices_of(facet_tags), edges_of(edges),
+                           indices_of(facet_tags), pairs_of(edges),
                            indices_of(edge_tags), indices_of(corners),
                            indices_of(frozen_tags), ridge_angle}};
   const SurfaceInput geometry{
       points_of<3>(geometry_points),   facets_of<3>(geometry_facets),
-      indices_of(geometry_facet_tags), edges_of(geometry_edges),
+      indices_of(geometry_facet_tags), pairs_of(geometry_edges),
       indices_of(geometry_edge_tags),  {},
       indices_of(frozen_tags),         ridge_angle};
   const RemeshSettings chosen = settings_of(settings);

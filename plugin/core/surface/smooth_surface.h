@@ -47,6 +47,7 @@ public:
   [[nodiscard]] Foot project(const Vector<3> &x, const FeatureSet &among = {}) const;
   /// The patch or curve of the piece nearest to x.
   [[nodiscard]] Index nearest_feature(const Vector<3> &x) const;
+  [[nodiscard]] const CurvedPiece &piece(std::size_t k) const { return pieces_[k]; }
 
 private:
   std::vector<CurvedPiece> pieces_;
