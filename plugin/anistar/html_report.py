@@ -233,14 +233,14 @@ def _mesher(mesher: Mapping[str, Any]) -> str:
             f"certified: {_percent(mesher['star_ok'])} of the stars, "
             f"{_percent(mesher['simplex_ok'])} of the cells"
         )
-    tags = [
-        [tag["name"] or str(tag["tag"]), tag["dim"], tag["before"], tag["after"], tag["change"]]
-        for tag in mesher["tags"]
-    ]
+    kept = ("dim", "before", "after", "change", "change_from_smooth")
+    tags = [[tag["name"] or str(tag["tag"]), *(tag[key] for key in kept)] for tag in mesher["tags"]]
+    columns = ["tag", "dimension", "before", "after", "change", "from the smooth shape"]
+    warnings = "".join(f"<p><strong>{_text(line)}</strong></p>" for line in mesher["warnings"])
     phases = [[phase, seconds] for phase, seconds in mesher["seconds"].items()]
     return (
-        f"<h3>Mesher</h3><p>{_text('; '.join(said))}</p>"
-        f"{_table(['tag', 'dimension', 'before', 'after', 'relative change'], tags)}"
+        f"<h3>Mesher</h3><p>{_text('; '.join(said))}</p>{warnings}"
+        f"{_table(columns, tags)}"
         f"{_table(['phase', 'seconds'], phases)}"
     )
 

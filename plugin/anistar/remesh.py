@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -22,12 +21,11 @@ from .projection import Project, pointwise
 from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport, report_of
 from .size_range import check_sizes
+from .telling import tell
 from .volume_remesh import check_surfaces, remesh_volume
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
-
-_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -136,8 +134,7 @@ def remesh(
         check_curves(new, report)
     elif is_curved:
         check_surfaces(new, report)
-    for warning in report.warnings:
-        _log.warning("%s", warning)
+    tell(report.warnings)
     return Remeshed(new, metric, report)
 
 

@@ -87,7 +87,7 @@ class RemeshReport:
         """Return the report as JSON builtins."""
         out = asdict(self)
         out["tags"] = [tag.as_dict() for tag in self.tags]
-        out["deviations"] = [{**asdict(it), "place": list(it.place)} for it in self.deviations]
+        out["deviations"] = [it.as_dict() for it in self.deviations]
         out["warnings"] = list(self.warnings)
         out["bad_cells"] = [{**asdict(bad), "place": list(bad.place)} for bad in self.bad_cells]
         return out

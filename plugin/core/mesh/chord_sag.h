@@ -17,7 +17,7 @@ namespace anistar {
 
 /// Curvatures change from chord to chord by less than this factor where chords sample a
 /// smooth shape.
-inline constexpr double largest_curvature_growth = 1.25;
+inline constexpr double largest_curvature_growth = 1.5;
 
 /// The curvature that a turn gives, as far as the largest of those around it bears it
 /// out.

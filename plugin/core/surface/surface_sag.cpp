@@ -19,7 +19,8 @@ struct SmoothEdge {
   std::array<std::size_t, 2> facets;
   std::array<double, 2>
       side;                ///< 1 where the surface bends away from the facet's normal
-  Vector<3> along, across; ///< unit vectors; across lies between the two facets
+  Vector<3> along, across; ///< unit vectors, across between the two facets
+  std::array<Vector<3>, 2> across_in; ///< and in the plane of each
   double length, turn, spread; ///< spread: between the middles of the facets, across
   double borne_turn = 0;
 
@@ -122,7 +123,8 @@ private:
     const double cosine = -height[0].dot(height[1]);
     edge.turn = elementary::angle_of(height[0].cross(height[1]).norm(), cosine);
     edge.spread = std::max((height[0].norm() + height[1].norm()) / 3, 1e-300);
-    edge.across = (height[1].normalized() - height[0].normalized()).normalized();
+    edge.across_in = {-height[0].normalized(), height[1].normalized()};
+    edge.across = (edge.across_in[0] + edge.across_in[1]).normalized();
     for (std::size_t k = 0; k < 2; ++k)
       edge.side[k] = normal(edge.facets[k]).dot(height[1 - k]) < 0 ? 1 : -1;
     return edge;
@@ -158,9 +160,9 @@ private:
     for (const SmoothEdge &edge : edges_)
       for (std::size_t k = 0; k < 2; ++k) {
         const std::size_t f = edge.facets[k];
+        const Vector<3> &across = edge.across_in[k];
         shapes[f] += edge.side[k] * edge.borne_turn * edge.length /
-                     std::max(normal(f).norm(), 1e-300) * edge.across *
-                     edge.across.transpose();
+                     std::max(normal(f).norm(), 1e-300) * across * across.transpose();
       }
     std::vector<double> sags(in_.facets.size(), 0);
     for (std::size_t f = 0; f < sags.size(); ++f) // ridges hide what lies beyond them:
@@ -168,17 +170,20 @@ private:
         for (Index v : in_.facets[f])
           for (std::size_t g : at_point_[at(v)])
             if (features_.facet_patch[g] == features_.facet_patch[f])
-              sags[f] = std::max(sags[f], sag(f, shapes[g]));
+              sags[f] = std::max(sags[f], sag(f, shapes[g], normal(g).normalized()));
     return sags;
   }
 
-  /// How far half the quadratic form lies from its linear interpolation.
-  [[nodiscard]] double sag(std::size_t f, const Shape &shape) const {
+  /// How far half the quadratic form of a facet with this normal lies from its linear
+  /// interpolation on facet f, whose edges are bent into the plane of that facet.
+  [[nodiscard]] double sag(std::size_t f, const Shape &shape,
+                           const Vector<3> &plane) const {
     const Facet<3> &t = in_.facets[f];
     double largest = 0, sum = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector<3> e = point(t[(i + 1) % 3]) - point(t[i]);
-      const double form = e.dot(shape * e);
+      const Vector<3> bent = (e - plane * plane.dot(e)).normalized();
+      const double form = e.squaredNorm() * bent.dot(shape * bent);
       largest = std::max(largest, std::abs(form) / 8);
       sum += form;
     }
@@ -199,8 +204,8 @@ private:
         largest[at(v)] = std::max(largest[at(v)], found[k]);
     for (std::size_t f = 0; f < sags.size(); ++f) {
       const Facet<3> &t = in_.facets[f];
-      sags[f] = std::max(
-          {sags[f], largest[at(t[0])], largest[at(t[1])], largest[at(t[2])]});
+      sags[f] =
+          std::max({sags[f], largest[at(t[0])], largest[at(t[1])], largest[at(t[2])]});
     }
   }
 };
