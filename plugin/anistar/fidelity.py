@@ -36,22 +36,28 @@ ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
+class Measures:
+    """Length, area or volume that each tag of edges, facets and cells carries."""
+
+    edges: dict[int, float]
+    facets: dict[int, float]
+    cells: dict[int, float]
+
+
+@dataclass(frozen=True, eq=False)
 class SmoothShape:
     """The smooth curves or surfaces that `remesh` puts through the facets of a geometry.
 
     Attributes
     ----------
-    edges, facets, cells : dict of int to float
-        Length, area or volume that each tag carries.
-    sag : (k,) float64 or None
+    measures : Measures
+    sag : (k,) float64
         How far a smooth shape may lie from each facet, as the turns of the facets around tell
-        (Grinspun et al., 2006, section 4); None when all facets lie in planes or on lines.
+        (Grinspun et al., 2006, section 4).
     """
 
-    edges: dict[int, float]
-    facets: dict[int, float]
-    cells: dict[int, float]
-    sag: Float | None = None
+    measures: Measures
+    sag: Float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,26 +128,25 @@ class SurfaceDeviation:
         return {**asdict(self), "place": list(self.place)}
 
 
-def flat_shape(geometry: Mesh) -> SmoothShape:
-    """Return the shape of a geometry whose facets are planes or lines."""
-    points = geometry.points
-    return SmoothShape(
-        edges=measure_by_tag(edge_lengths(points, geometry.edges), geometry.edge_tags),
-        facets=measure_by_tag(facet_measures(points, geometry.facets), geometry.facet_tags),
-        cells=measure_by_tag(cell_volumes(points, geometry.cells), geometry.cell_tags),
+def measures_of(mesh: Mesh) -> Measures:
+    """Return what the tags of a mesh carry."""
+    return Measures(
+        edges=measure_by_tag(edge_lengths(mesh.points, mesh.edges), mesh.edge_tags),
+        facets=measure_by_tag(facet_measures(mesh.points, mesh.facets), mesh.facet_tags),
+        cells=measure_by_tag(cell_volumes(mesh.points, mesh.cells), mesh.cell_tags),
     )
 
 
-def smooth_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape:
-    """Return the shape of a geometry whose facets sample smooth curves or surfaces."""
+def smooth_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape | None:
+    """Return the shape that a geometry is taken for, None where its facets are that."""
     frozen = np.array(options.frozen_tags, dtype=np.int32)
     facets = geometry.facets, geometry.facet_tags
     if geometry.dim == 2:
-        cells = geometry.cells, np.unique(geometry.cell_tags, return_inverse=True)[1]
+        regions = np.unique(geometry.cell_tags, return_inverse=True)[1]
         measure, bulge, sag, edge_length = _core.facet_shapes2(
             geometry.points,
-            cells[0],
-            cells[1].astype(np.int32),
+            geometry.cells,
+            regions.astype(np.int32),
             *facets,
             geometry.corners,
             frozen,
@@ -157,15 +162,17 @@ def smooth_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape:
             frozen,
             options.ridge_angle,
         )
-    volumes = measure_by_tag(cell_volumes(geometry.points, geometry.cells), geometry.cell_tags)
+    if not (sag.any() or bulge.any()):
+        return None
+    cells = measures_of(geometry).cells
     for tag, added in _added_to_regions(geometry, bulge):
-        volumes[tag] += added
-    return SmoothShape(
+        cells[tag] += added
+    measures = Measures(
         edges=measure_by_tag(edge_length, geometry.edge_tags),
         facets=measure_by_tag(measure, geometry.facet_tags),
-        cells=volumes,
-        sag=sag if sag.any() else None,
+        cells=cells,
     )
+    return SmoothShape(measures, sag)
 
 
 def _added_to_regions(geometry: Mesh, bulge: Float) -> Iterator[tuple[int, float]]:
@@ -183,7 +190,7 @@ def _added_to_regions(geometry: Mesh, bulge: Float) -> Iterator[tuple[int, float
 
 
 def tag_measures(
-    geometry: Mesh, shape: SmoothShape, new: Mesh, *, has_ridges: bool
+    geometry: Mesh, shape: SmoothShape | None, new: Mesh, *, has_ridges: bool
 ) -> tuple[TagMeasure, ...]:
     """Compare what every tag carries.
 
@@ -194,13 +201,14 @@ def tag_measures(
     MeshingError
         If a tag of the geometry is gone.
     """
-    before, after = flat_shape(geometry), flat_shape(new)
+    before, after = measures_of(geometry), measures_of(new)
+    sampled = before if shape is None else shape.measures
     kinds = [(geometry.dim - 1, "facet", "facets"), (geometry.dim, "cell", "cells")]
     if geometry.dim == 3 and has_ridges:
         kinds.insert(0, (1, "edge", "edges"))
     found = []
     for dim, kind, attribute in kinds:
-        given, smooth, made = (getattr(it, attribute) for it in (before, shape, after))
+        given, smooth, made = (getattr(it, attribute) for it in (before, sampled, after))
         lost = sorted(set(given) - set(made))
         if lost:
             raise MeshingError(f"the new mesh lost {kind} tag {lost[0]}")
@@ -222,8 +230,6 @@ def surface_deviations(
     geometry: Mesh, shape: SmoothShape, new: Mesh
 ) -> tuple[SurfaceDeviation, ...]:
     """Return how far the new vertices lie from the facets of the geometry, tag by tag."""
-    if shape.sag is None:
-        return ()
     found = []
     noise = ROUND_OFF * float(np.ptp(geometry.points, axis=0).max())
     for tag in np.unique(geometry.facet_tags).tolist():

@@ -13,7 +13,7 @@ from . import _core
 from .contact import check_curves
 from .core_errors import meshing_errors
 from .demand import check_demand
-from .fidelity import flat_shape, smooth_shape, surface_deviations, tag_measures
+from .fidelity import smooth_shape, surface_deviations, tag_measures
 from .mesh import Mesh
 from .metric import check_metric
 from .options import require
@@ -123,12 +123,12 @@ def remesh(
         **ridges,
     )
     is_curved = mesh.dim == 2 or raw["counts"]["curved"] > 0
-    shape = smooth_shape(geometry, options) if is_curved else flat_shape(geometry)
+    shape = smooth_shape(geometry, options) if is_curved else None
     report = report_of(
         raw,
         new,
         tags=tag_measures(geometry, shape, new, has_ridges=len(mesh.edges) > 0),
-        deviations=() if project else surface_deviations(geometry, shape, new),
+        deviations=surface_deviations(geometry, shape, new) if shape and not project else (),
     )
     if mesh.dim == 2:
         check_curves(new, report)

@@ -9,7 +9,7 @@ from shapes import uniform
 
 from anistar.consistency import ConsistencyOptions
 from anistar.errors import MeshingError
-from anistar.fidelity import flat_shape, tag_measures
+from anistar.fidelity import tag_measures
 from anistar.mesh import Mesh
 from anistar.metric import MetricError
 from anistar.remesh import RemeshOptions, remesh
@@ -126,7 +126,7 @@ def test_a_mesh_that_lost_a_tag_is_an_error(kind, changes):
     lost = dict(mesh.arrays())
     lost[changes] = np.zeros_like(lost[changes])
     with pytest.raises(MeshingError, match=f"the new mesh lost {kind} tag "):
-        tag_measures(mesh, flat_shape(mesh), Mesh._trusted(**lost), has_ridges=False)
+        tag_measures(mesh, None, Mesh._trusted(**lost), has_ridges=False)
 
 
 def test_a_geometry_that_is_another_domain_is_refused_with_a_place():

@@ -52,6 +52,7 @@ public:
   /// d at / dt.
   [[nodiscard]] Vector<2> derivative(double t) const;
 
+  [[nodiscard]] bool is_straight(std::size_t k) const { return is_straight_[k]; }
   /// Fixes the shape. @pre `points` hold the positions of `vertices`.
   void fit(std::vector<Vector<2>> points, const Projection *projection);
   /// Replaces segment k by its chord, which no projection moves any more.

@@ -17,6 +17,8 @@ std::pair<double, double> measure_piece(const CurvedPiece &piece,
                                         const Vector<3> &origin) {
   const std::array<Vector<3>, 3> &p = piece.corners;
   const Vector<3> flat = (p[1] - p[0]).cross(p[2] - p[0]);
+  if (piece.is_flat())
+    return {flat.norm() / 2, 0};
   double area = 0, volume = -(p[0] - origin).dot(flat) / 6;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (std::size_t j = 0; j < nodes.size(); ++j) { // collapsed to the first corner

@@ -100,6 +100,14 @@ CurvedPiece flat_piece(const std::array<Vector<3>, 3> &corners, Index feature) {
 
 } // namespace
 
+bool CurvedPiece::is_flat() const {
+  for (const auto &row : offsets)
+    for (const Vector<3> &offset : row)
+      if (!offset.isZero(0))
+        return false;
+  return true;
+}
+
 Vector<3> CurvedPiece::displacement(const std::array<double, 3> &w) const {
   Vector<3> sum = Vector<3>::Zero(), middle = Vector<3>::Zero();
   for (std::size_t i = 0; i < 3; ++i)

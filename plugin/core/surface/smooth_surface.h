@@ -24,6 +24,7 @@ struct CurvedPiece {
   std::array<std::array<Vector<3>, 3>, 3> offsets;
   Index feature = none; ///< the patch or curve of the geometry that it is part of
 
+  [[nodiscard]] bool is_flat() const;
   [[nodiscard]] Vector<3> displacement(const std::array<double, 3> &weights) const;
   [[nodiscard]] Vector<3> chordal(const std::array<double, 3> &weights) const;
   /// Of the curved triangle, not normalised.
