@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from rich import box
@@ -15,13 +16,24 @@ from rich.table import Table
 
 from ..remesh_report import RemeshReport
 from ..report import to_json
+from .streams import readers_may_leave
 
 
+class _Terminal(Console):
+    """A console that leaves it to its caller what to do when nobody reads any more."""
+
+    def on_broken_pipe(self) -> None:
+        """Raise the error, where Rich would end the process."""
+        raise
+
+
+@readers_may_leave()
 def show_json(report: Any) -> None:
     """Print the report as JSON on stdout."""
     print(to_json(report))
 
 
+@readers_may_leave()
 def show_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
     """Print a table on stdout; numbers go to the right."""
     table = Table(title=escape(title), box=box.SIMPLE_HEAD, title_justify="left")
@@ -30,12 +42,27 @@ def show_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]
         table.add_column(column, justify="right" if is_number else "left")
     for row in rows:
         table.add_row(*(escape(as_text(value)) for value in row))
-    Console().print(table)
+    _Terminal().print(table)
 
 
-def say(text: str) -> None:
-    """Print one line on stdout."""
-    Console().print(text, highlight=False, markup=False, soft_wrap=True)
+@readers_may_leave()
+def say(text: str, *, beside_json: bool = False) -> None:
+    """Print one line on stdout, or on stderr where stdout is JSON."""
+    terminal = _Terminal(stderr=beside_json)
+    terminal.print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def say_removed(count: int, folder: Path, *, beside_json: bool) -> None:
+    """Tell that files of an earlier run were removed, if there were any."""
+    if count:
+        say(f"{folder}: {count} files of an earlier run removed", beside_json=beside_json)
+
+
+def say_replaced(paths: Sequence[str], by: str, *, beside_json: bool) -> None:
+    """Tell that the output went to the place of input files, if it did."""
+    if paths:
+        verb = "are" if len(paths) > 1 else "is"
+        say(f"{' and '.join(paths)} {verb} replaced by {by}", beside_json=beside_json)
 
 
 def as_text(value: Any) -> str:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import NoReturn
 
 from ..errors import MeshingError
 from . import adapt, check, convert, demo, doctor, loop, metric, remesh, report, study, transfer
 from .options import canonical_flags
+from .streams import complain, open_closed_streams, readers_may_leave
 
 OK, FAILED, BAD_INPUT = 0, 1, 2
 
@@ -70,26 +71,23 @@ def main(argv: Sequence[str] | None = None) -> int:
     int
         0 done, 1 failed, 2 wrong usage or input.
     """
+    open_closed_streams()
     words = canonical_flags(sys.argv[1:] if argv is None else argv)
     try:
         arguments = parser().parse_args(words)
     except SystemExit as stop:
+        with suppress(RuntimeError), readers_may_leave():
+            sys.stdout.flush()  # what --help has printed
         return int(stop.code or 0)
     try:
-        code = int(arguments.run(arguments))
-        sys.stdout.flush()
-        return code
-    except BrokenPipeError:
-        # The reader, say `head`, has seen enough; the last flush at exit must not fail again.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
+        return int(arguments.run(arguments))
     except KeyboardInterrupt:
-        print(f"anistar {arguments.command}: interrupted", file=sys.stderr)
+        complain(f"anistar {arguments.command}: interrupted")
         return FAILED
     except Exception as error:
         if arguments.debug:
             traceback.print_exc()
-        print(f"anistar {arguments.command}: error: {one_line(error)}", file=sys.stderr)
+        complain(f"anistar {arguments.command}: error: {one_line(error)}")
         return exit_code(error)
 
 
