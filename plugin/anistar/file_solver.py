@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 import subprocess
 from collections.abc import Mapping
@@ -12,6 +13,7 @@ from .errors import FormatError
 from .fields import Field
 from .formats import read_with_report, write
 from .mesh import Mesh
+from .renumbering import renumbering
 
 #: Suffix of the mesh file, and that of the solution file.
 FILE_KINDS = {
@@ -27,8 +29,27 @@ _WITH_FIELDS = ("vtu", "msh")
 _WITHOUT_MESH = (".sol", ".solb")
 
 
+def exchanged_files(kind: str) -> tuple[str, ...]:
+    """Return regular expressions of the names of all files that a `FileSolver` of a kind leaves."""
+    mesh_suffix, solution_suffix = FILE_KINDS[kind]
+    solution = _solution_stem(r"step_\d{3,}", kind)
+    return (
+        r"step_\d{3,}" + re.escape(mesh_suffix),
+        solution + re.escape(solution_suffix),
+        r"step_\d{3,}\.log",
+    )
+
+
+def _solution_stem(mesh_stem: str, kind: str) -> str:
+    mesh_suffix, solution_suffix = FILE_KINDS[kind]
+    return f"{mesh_stem}_solution" if mesh_suffix == solution_suffix else mesh_stem
+
+
 class FileSolver:
     """Runs a command for each solve; an instance is the `solve` of `adapt_loop`.
+
+    The command may number points and cells anew: by the mesh in its solution the fields are put
+    back into our order. A medit solution has no mesh, and its order must be that of the mesh file.
 
     Parameters
     ----------
@@ -71,7 +92,7 @@ class FileSolver:
         RuntimeError
             If the command fails or writes no solution.
         FormatError
-            If its solution cannot be read or does not fit the mesh.
+            If its solution cannot be read, or is one on another mesh.
         """
         mesh_file, solution_file = self._paths()
         solution_file.unlink(missing_ok=True)
@@ -81,11 +102,10 @@ class FileSolver:
             raise RuntimeError(f"the solver wrote no {solution_file}")
         source = mesh_file if solution_file.suffix in _WITHOUT_MESH else solution_file
         solved, found, report = read_with_report(source)
-        if solved.n_points != mesh.n_points or solved.n_cells != mesh.n_cells:
-            raise FormatError(
-                f"{solution_file} has {solved.n_points} points and {solved.n_cells} cells, the "
-                f"mesh has {mesh.n_points} and {mesh.n_cells}"
-            )
+        try:
+            found = renumbering(mesh, solved).carried(found)
+        except ValueError as error:
+            raise FormatError(f"{source} is not the mesh to solve on: {error}") from error
         if not found:
             reason = "; ".join(report.warnings) or "it holds no field"
             raise FormatError(f"no fields in {solution_file}: {reason}")
@@ -95,7 +115,7 @@ class FileSolver:
     def _paths(self) -> tuple[Path, Path]:
         mesh_suffix, solution_suffix = FILE_KINDS[self.kind]
         stem = f"step_{self.count:03d}"
-        solution = f"{stem}_solution" if mesh_suffix == solution_suffix else stem
+        solution = _solution_stem(stem, self.kind)
         return self.folder / (stem + mesh_suffix), self.folder / (solution + solution_suffix)
 
     def _run(self, mesh_file: Path, solution_file: Path) -> None:

@@ -68,7 +68,7 @@ def test_a_solver_that_returns_another_mesh_is_told_so(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     command = f"{sys.executable} solve.py {{mesh}} {{solution}}"
     solver = FileSolver(command, tmp_path, kind="vtu")
-    with pytest.raises(FormatError, match="has 16 points and 18 cells, the mesh has 9 and 8"):
+    with pytest.raises(FormatError, match="has 16 points and 18 cells in 2D, the mesh has 9 and 8"):
         solver(square(2), {})
 
 
