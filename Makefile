@@ -15,7 +15,7 @@ setup: ## Install what is missing and build the package into .venv
 	@./bootstrap.sh
 
 demo: setup ## Adapt a channel flow and leave pictures, meshes and a report in anistar-demo/
-	@.venv/bin/anistar demo
+	@.venv/bin/anistar demo --force
 
 test: setup ## Run the tests
 	@$(PYTHON) -m pytest $(PYTEST_ARGS)

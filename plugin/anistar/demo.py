@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import pictures
 from .adapt import AdaptOptions, adapt
 from .demo_problem import EPSILON, channel, solve
-from .demo_result import Demo, DemoRow, columns_of, order_of
+from .demo_result import PICTURES, REPORT, Demo, DemoRow, columns_of, order_of
 from .interpolation_error import l2_norm
 from .loop import Loop, LoopOptions, Step, adapt_loop
 from .mesh import Mesh
@@ -101,10 +101,10 @@ def run_demo(
         uniform_order=order_of(rows, "uniform", dim=2),
         reference_points=reference[0].n_points,
         loop=loop,
-        files=(*files, place / "report.json"),
+        files=(*files, place / REPORT),
         seconds=time.perf_counter() - started,
     )
-    write_json(place / "report.json", demo)
+    write_json(place / REPORT, demo)
     return demo
 
 
@@ -141,24 +141,24 @@ def _written(place: Path, loop: Loop, steps: Sequence[Step], rows: Sequence[Demo
     middle = steps[min(1, len(steps) - 1)]
     shown = [first, *steps]
     files = write_series(place / "channel.pvd", ((step.mesh, step.fields) for step in shown))
-    pictures.overview_picture(
-        place / "overview.png", last.mesh, last.fields["u"], _metric_of(middle), label="temperature"
+    overview, first_mesh, last_mesh, close_up, solution, metric, convergence = (
+        place / name for name in PICTURES
     )
-    pictures.mesh_picture(place / "mesh_first.png", first.mesh)
-    pictures.mesh_picture(place / "mesh_last.png", last.mesh)
-    pictures.mesh_picture(place / "mesh_last_close_up.png", last.mesh, box=CLOSE_UP)
-    pictures.solution_picture(
-        place / "solution.png", last.mesh, last.fields["u"], label="temperature"
-    )
-    pictures.metric_picture(place / "metric.png", *_metric_of(middle))
+    u = last.fields["u"]
+    pictures.overview_picture(overview, last.mesh, u, _metric_of(middle), label="temperature")
+    pictures.mesh_picture(first_mesh, first.mesh)
+    pictures.mesh_picture(last_mesh, last.mesh)
+    pictures.mesh_picture(close_up, last.mesh, box=CLOSE_UP)
+    pictures.solution_picture(solution, last.mesh, u, label="temperature")
+    pictures.metric_picture(metric, *_metric_of(middle))
     curves = {
         f"{kind} mesh": list(zip(*columns_of(rows, kind), strict=True))
         for kind in ("uniform", "adapted")
     }
     pictures.convergence_picture(
-        place / "convergence.png", curves, order=1.0, label="$L^2$ error against the reference"
+        convergence, curves, order=1.0, label="$L^2$ error against the reference"
     )
-    return [*files, *sorted(place.glob("*.png"))]
+    return [*files, *(place / name for name in PICTURES)]
 
 
 def _metric_of(step: Step) -> tuple[Mesh, Floats]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,25 @@ from typing import Any
 from .loop import Loop
 from .report import attributes
 from .study import observed_order
+
+REPORT = "report.json"
+
+PICTURES = (
+    "overview.png",
+    "mesh_first.png",
+    "mesh_last.png",
+    "mesh_last_close_up.png",
+    "solution.png",
+    "metric.png",
+    "convergence.png",
+)
+
+# Regular expressions of the names of the files that the demo leaves, in 2D or in 3D.
+DEMO_FILES = (
+    re.escape(REPORT),
+    r"(channel|front)(\.pvd|_\d{3,}\.vtu)",
+    *(re.escape(name) for name in PICTURES),
+)
 
 
 @dataclass(frozen=True, slots=True)

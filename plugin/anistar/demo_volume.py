@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .demo_result import Demo, DemoRow, order_of
+from .demo_result import REPORT, Demo, DemoRow, order_of
 from .interpolation_error import l2_error
 from .loop import LoopOptions, Step, adapt_loop
 from .mesh import Mesh
@@ -99,10 +99,10 @@ def run_volume_demo(
         uniform_order=order_of(rows, "uniform", dim=3),
         reference_points=None,
         loop=loop,
-        files=(*files, place / "report.json"),
+        files=(*files, place / REPORT),
         seconds=time.perf_counter() - started,
     )
-    write_json(place / "report.json", demo)
+    write_json(place / REPORT, demo)
     return demo
 
 

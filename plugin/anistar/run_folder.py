@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from .errors import FormatError
+from .file_solver import FILE_KINDS, exchanged_files
+from .folder_lock import locked
 from .formats import read, write
-from .formats.atomic import remove_leftovers
 from .loop import Loop, Step
+from .own_files import OwnFiles
 from .report import as_builtin, write_json
 from .series import member, write_index
 
 SERIES = "series.pvd"
 REPORT = "report.json"
 RUNNING = "running"
+
+# Regular expressions of the names of the files that every loop writes.
+LOOP_FILES = (re.escape(REPORT), re.escape(SERIES), r"series_\d{3,}\.vtu")
 
 
 @dataclass(frozen=True)
@@ -43,7 +50,9 @@ class RunFolder:
     folder : path
         Is made if it does not exist.
     settings : mapping
-        What the loop depends on, JSON builtins; a loop that goes on must have the same.
+        What the loop depends on, JSON builtins; a loop that goes on must have the same. Where
+        it has a `format`, the files that a `FileSolver` of that kind exchanges belong to the
+        run as well.
 
     Attributes
     ----------
@@ -57,10 +66,50 @@ class RunFolder:
         self.settings = as_builtin(settings)
         self.steps: list[Step] = []
 
-    def begin(self) -> None:
-        """Forget an earlier run in this folder: none of its steps is one of this run."""
-        (self.folder / REPORT).unlink(missing_ok=True)
-        remove_leftovers(self.folder)
+    def locked(self) -> AbstractContextManager[None]:
+        """Keep other runs out of the folder, see `anistar.folder_lock`."""
+        return locked(self.folder)
+
+    def begin(self, *, force: bool = False, keep: Iterable[str | Path] = ()) -> int:
+        """Start a new run, which has no step of an earlier one.
+
+        Parameters
+        ----------
+        force : bool
+            Remove the files of an earlier run. Files that no run writes always stay.
+        keep : iterable of path
+            Files that must not be removed, such as the first mesh.
+
+        Returns
+        -------
+        int
+            How many files were removed.
+
+        Raises
+        ------
+        FormatError
+            If the folder holds files that the run would write, and not `force`, or one of them
+            is in `keep`.
+        """
+        own = self._own_files(self.settings)
+        own.remove_leftovers()
+        if not force:
+            own.require_none("--resume goes on with it, --force replaces it")
+        return self._own_files(self.settings, self._earlier_settings()).remove(keep)
+
+    def _own_files(self, *settings: Mapping[str, Any]) -> OwnFiles:
+        given = [entry.get("format") for entry in settings]
+        kinds = [kind for kind in FILE_KINDS if kind in given]
+        exchanged = [pattern for kind in kinds for pattern in exchanged_files(kind)]
+        return OwnFiles(self.folder, [*LOOP_FILES, *exchanged])
+
+    def _earlier_settings(self) -> Mapping[str, Any]:
+        """Return the settings of the run that is replaced, nothing where its report is damaged."""
+        try:
+            settings = json.loads((self.folder / REPORT).read_text(encoding="utf-8"))["settings"]
+        except (OSError, ValueError, KeyError, TypeError):
+            return {}
+        return settings if isinstance(settings, dict) else {}
 
     def save(self, step: Step) -> None:
         """Add a finished step."""
@@ -85,7 +134,7 @@ class RunFolder:
             If its files are damaged.
         """
         path = self.folder / REPORT
-        remove_leftovers(self.folder)
+        self._own_files(self.settings).remove_leftovers()
         if not path.is_file():
             return []
         try:

@@ -1,5 +1,6 @@
 """What `anistar loop` takes from a solver, and what it leaves alone in its folder."""
 
+import os
 import subprocess
 from pathlib import Path
 
@@ -75,3 +76,153 @@ def test_a_solver_that_moves_a_point_is_refused_by_file_and_point(folder, monkey
     (said,) = capsys.readouterr().err.splitlines()
     assert "run/step_000_solution.vtu is not the mesh to solve on: its point 8 at (0.1" in said
     assert not Path("run/series_000.vtu").exists()
+
+
+def plain(mesh):
+    return mesh, {"u": front(mesh.points)}
+
+
+def contents(folder="run"):
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in Path(folder).rglob("*")
+        if path.is_file()
+    }
+
+
+@pytest.fixture
+def earlier(folder, monkeypatch):
+    """The folder with an earlier run of three solves in `run`."""
+    solver(monkeypatch, plain)
+    assert loop("--complexities", "60,90") == 0
+    return contents()
+
+
+def refused(monkeypatch, capsys, *more):
+    """Return the one line of a loop that is refused before anything is solved or changed."""
+    before = contents()
+    solver(monkeypatch, lambda mesh: pytest.fail("it was solved"))
+    capsys.readouterr()
+    assert loop(*more) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert contents() == before
+    (line,) = said.err.splitlines()
+    return line
+
+
+def test_an_earlier_run_is_not_overwritten(earlier, monkeypatch, capsys):
+    said = refused(monkeypatch, capsys)
+    assert "run holds an earlier run (report.json, series.pvd, series_000.vtu and 11 o" in said
+    assert said.endswith("--resume goes on with it, --force replaces it, or choose another folder")
+
+
+def test_a_single_file_that_would_be_overwritten_is_enough(folder, monkeypatch, capsys):
+    Path("run").mkdir()
+    Path("run/step_007.sol").write_text("mine")
+    assert "run holds an earlier run (step_007.sol)" in refused(monkeypatch, capsys)
+
+
+MINE = [
+    ".my.partition.json",
+    ".old.parts/kept",
+    "notes.txt",
+    "report.html",
+    "series_old.vtu",
+    "series_00.vtu",
+    "step_000.msh",
+    "step_000.mesh.bak",
+    "step_000_solution.vtu",
+    "my_step_000.mesh",
+    "sub/step_000.mesh",
+]
+
+
+def test_force_removes_the_files_of_the_earlier_run_and_no_other(earlier, monkeypatch, capsys):
+    for name in MINE:
+        Path("run", name).parent.mkdir(exist_ok=True)
+        Path("run", name).write_text("mine")
+    capsys.readouterr()
+    assert loop("--force", "--json") == 0
+    said = capsys.readouterr()
+    assert said.err == "run: 14 files of an earlier run removed\n"
+    assert '"stop_reason"' in said.out
+    left = contents()
+    assert {name for name, content in left.items() if content == b"mine"} == set(MINE)
+    assert left.keys() - set(MINE) == {name for name in earlier if "_002" not in name}
+
+
+def test_files_of_the_user_are_no_obstacle(folder, monkeypatch):
+    for name in MINE:
+        Path("run", name).parent.mkdir(parents=True, exist_ok=True)
+        Path("run", name).write_text("mine")
+    solver(monkeypatch, plain)
+    assert loop() == 0
+    assert loop("--force") == 0
+    assert {name for name, content in contents().items() if content == b"mine"} == set(MINE)
+
+
+def test_force_removes_what_was_exchanged_in_another_format(earlier, monkeypatch, capsys):
+    assert loop("--force", "--format", "vtu") == 0
+    assert not [name for name in contents() if name.endswith((".mesh", ".sol"))]
+    assert "run/step_000_solution.vtu" in map(str, Path("run").iterdir())
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (["--resume"], "not allowed with argument"),
+        (["--command", "solver {mesh}"], "must contain {solution}"),
+        (["--complexities", "-3"], "complexities[0] must be above 0"),
+    ],
+)
+def test_a_call_that_is_refused_removes_nothing(earlier, monkeypatch, capsys, more, said):
+    assert said in refused(monkeypatch, capsys, "--force", *more)
+
+
+def test_a_target_without_room_in_memory_removes_nothing(earlier, monkeypatch):
+    assert loop("--force", "--complexities", "1e12") == 1
+    assert contents() == earlier
+
+
+def test_the_input_is_not_removed(earlier, capsys):
+    Path("link.vtu").symlink_to("run/series_001.vtu")
+    for source in ("run/series_001.vtu", "link.vtu"):
+        words = ["loop", source, "--complexities", "60", "-o", "run", "--force"]
+        assert main([*words, "--command", "solver {mesh} {solution}"]) == 2
+        assert "cannot replace run/series_001.vtu, it is the input: copy" in capsys.readouterr().err
+        assert contents() == earlier
+
+
+def test_a_folder_with_the_name_of_a_file_is_not_removed(folder, monkeypatch, capsys):
+    Path("run/series.pvd").mkdir(parents=True)
+    assert "(series.pvd)" in refused(monkeypatch, capsys)
+    assert "run/series.pvd: it is a folder" in refused(monkeypatch, capsys, "--force")
+
+
+def test_a_second_loop_in_the_folder_is_refused(folder, monkeypatch, capsys):
+    codes = []
+
+    def solve(mesh):
+        if not codes:
+            codes.append(loop("--resume"))
+            Path("link").symlink_to("run")
+            codes.append(main(["demo", "-o", "link", "--dim", "3"]))
+        return plain(mesh)
+
+    solver(monkeypatch, solve)
+    assert loop() == 0
+    assert codes == [2, 2]
+    first, second = capsys.readouterr().err.splitlines()
+    assert f"anistar loop: error: run is in use by process {os.getpid()}: wait until" in first
+    assert f"anistar demo: error: link is in use by process {os.getpid()}: wait until" in second
+    assert len([name for name in contents() if name.startswith("series_")]) == 2
+
+
+def test_a_folder_with_blanks_and_a_link_to_a_folder_will_do(folder, monkeypatch):
+    Path("my runs/first").mkdir(parents=True)
+    Path("link").symlink_to("my runs/first")
+    solver(monkeypatch, plain)
+    assert loop("-o", "link") == 0
+    assert loop("-o", "my runs/first", "--resume") == 0
+    assert len(contents("my runs")) == 2 + 2 + 3 * 2

@@ -86,7 +86,7 @@ def test_a_step_that_cannot_be_saved_is_not_in_the_report_nor_is_an_older_one(fo
 
     with monkeypatch.context() as disk:
         disk.setattr("anistar.run_folder.write", full)
-        assert main(arguments("run")) == 2
+        assert main(arguments("run", "--force")) == 2
     report = json.loads(Path("run/report.json").read_text())
     assert report["steps"] == []
     assert "No space left" in report["stop_reason"]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..errors import FormatError
 from ..formats import is_known
-from ..formats.suffixes import SOLUTION_OF, SOLUTIONS, suffix_of
+from ..formats.suffixes import SOLUTION_OF, SOLUTIONS, solution_beside, suffix_of
 
 
 def writable(path: str, *, is_mesh: bool = True) -> Path:
@@ -48,6 +49,62 @@ def writable_file(path: str) -> Path:
     if not os.access(target.parent, os.W_OK):
         raise FormatError(f"cannot write {target}: folder {target.parent} is not writable")
     return target
+
+
+def new_file(path: str, *, force: bool, keep: Iterable[str]) -> Path:
+    """Return the path of an output file that replaces no other unless it is told to.
+
+    Parameters
+    ----------
+    path : str
+    force : bool
+        It may replace a file.
+    keep : iterable of str
+        Files that it must not replace in any case, such as the input.
+
+    Raises
+    ------
+    FormatError
+        As `writable_file`, or if there is such a file already.
+    """
+    target = writable_file(path)
+    if any(_is_same(target, Path(other)) for other in keep):
+        raise FormatError(f"cannot write {target}: it is the input")
+    if target.exists() and not force:
+        raise FormatError(f"{target} exists: --force replaces it, or choose another name")
+    return target
+
+
+def replaced_inputs(inputs: Iterable[str | None], output: Path, *others: Path | None) -> list[str]:
+    """Return the input files that are about to be replaced by an output.
+
+    A medit mesh stands for its solution as well, among the inputs and the outputs. A hard link is
+    another name of what was there before, and keeps it.
+
+    Parameters
+    ----------
+    inputs : iterable of str or None
+        What the command reads, None for what was not given.
+    output : Path
+        A mesh or a solution.
+    *others : Path or None
+        Further outputs, which stand for themselves.
+    """
+    beside = SOLUTION_OF.get(suffix_of(output))
+    written = [output, *filter(None, others)]
+    written += [output.with_suffix(beside)] if beside else []
+    given = [Path(path) for path in inputs if path]
+    read = [*given, *filter(None, map(solution_beside, given))]
+    found = [path for path in read if any(_is_same(path, target) for target in written)]
+    return list(dict.fromkeys(map(str, found)))
+
+
+def _is_same(one: Path, other: Path) -> bool:
+    """Return whether writing to one path replaces what is at the other."""
+    if os.path.realpath(one) == os.path.realpath(other):
+        return True
+    # As on file systems without capitals. Hard links are several entries, and one is replaced.
+    return one.exists() and other.exists() and one.samefile(other) and other.stat().st_nlink == 1
 
 
 def metric_target(path: str | None, mesh_output: Path) -> Path | None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from ..demand import check_targets
 from ..file_solver import FILE_KINDS, FileSolver
 from ..formats import read
 from ..loop import Loop, LoopError, LoopOptions, Step, adapt_loop
+from ..mesh import Mesh
 from ..report import as_builtin
 from ..run_folder import RunFolder
 from . import console
@@ -48,10 +50,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--max-iterations", type=int, default=20, metavar="N")
     parser.add_argument("--field", action="append", metavar="NAME", help="field for the metric")
     parser.add_argument("--format", "--files", choices=tuple(FILE_KINDS), default="mesh")
-    parser.add_argument(
+    earlier = parser.add_mutually_exclusive_group()
+    earlier.add_argument(
         "--resume",
         action="store_true",
         help="go on after the steps that the folder holds, as after a crash",
+    )
+    earlier.add_argument(
+        "--force", action="store_true", help="replace the run that the folder holds"
     )
     add_metric_options(parser, without=("target_error",))
     add_remesh_options(parser)
@@ -68,13 +74,37 @@ def run(arguments: argparse.Namespace) -> int:
     )
     mesh, _ = read(arguments.input)
     folder = RunFolder(arguments.output, _settings(arguments, options))
-    if not arguments.resume:
-        folder.begin()
-    finished = folder.load()
-    first = finished[0].mesh if finished else mesh
-    solve = FileSolver(arguments.solver, folder.folder, arguments.format, first=len(finished))
+    solve = FileSolver(arguments.solver, folder.folder, arguments.format)
+    # Here as well, so that no earlier run is removed for one that is refused.
+    check_targets(
+        mesh, options.adapt.metric, options.sure_complexities(mesh.dim), options.adapt.remesh
+    )
+    with folder.locked():
+        finished = folder.load() if arguments.resume else _begun(arguments, folder)
+        solve.count = len(finished)
+        first = finished[0].mesh if finished else mesh
+        loop = _looped(solve, first, options, folder=folder, is_quiet=arguments.json)
+    if arguments.json:
+        console.show_json(loop)
+    else:
+        _show(loop)
+    return 0
+
+
+def _begun(arguments: argparse.Namespace, folder: RunFolder) -> list[Step]:
+    """Make room for a new run, which has no finished step."""
+    removed = folder.begin(force=arguments.force, keep=[arguments.input])
+    console.say_removed(removed, folder.folder, beside_json=arguments.json)
+    return []
+
+
+def _looped(
+    solve: FileSolver, first: Mesh, options: LoopOptions, *, folder: RunFolder, is_quiet: bool
+) -> Loop:
+    """Run the loop after the steps that the folder holds, and save every further one."""
+    finished = list(folder.steps)
     total = len(options.complexities) + 1 if options.complexities else None
-    with console.progress_bar(total, is_quiet=arguments.json) as advance:
+    with console.progress_bar(total, is_quiet=is_quiet) as advance:
 
         def moved(step: Step) -> None:
             folder.save(step)
@@ -89,11 +119,7 @@ def run(arguments: argparse.Namespace) -> int:
             folder.close(Loop(tuple(folder.steps), "interrupted"))
             raise
     folder.close(loop)
-    if arguments.json:
-        console.show_json(loop)
-    else:
-        _show(loop)
-    return 0
+    return loop
 
 
 def _settings(arguments: argparse.Namespace, options: LoopOptions) -> dict[str, Any]:

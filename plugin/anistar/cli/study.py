@@ -14,6 +14,7 @@ from ..loop import Solve
 from ..mesh import Mesh
 from ..study import BASELINES, convergence_study
 from . import console
+from .files import new_file
 from .options import (
     adapt_options,
     add_metric_options,
@@ -49,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--csv", metavar="FILE", help="write the table")
     parser.add_argument("--picture", metavar="FILE", help="draw the error against the points")
+    parser.add_argument("--force", action="store_true", help="replace these files if they exist")
     add_metric_options(parser)
     add_remesh_options(parser)
     add_transfer_method_option(parser)
@@ -58,6 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     if arguments.picture:
         importlib.import_module("anistar.pictures")  # without matplotlib the work ends here
+    for path in filter(None, (arguments.csv, arguments.picture)):
+        new_file(path, force=arguments.force, keep=[arguments.input])
     exact = function_of_position(arguments.exact)
     mesh, _ = read(arguments.input)
 

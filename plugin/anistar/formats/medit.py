@@ -18,7 +18,7 @@ from ..fields import Field
 from ..mesh import Mesh
 from ..metric.tensor_orders import from_components, to_components
 from . import gmf
-from .atomic import replaced
+from .atomic import all_replaced, replaced
 from .raw import Array, Block, RawMesh
 from .suffixes import BINARY, SOLUTION_OF, solution_beside, suffix_of
 
@@ -137,16 +137,24 @@ def write_mesh(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
         container.notes["names"] = entries
     elif mesh.names:
         _log.warning("%s: the binary medit format has no names, they are not written", path)
-    with replaced(path) as temporary:
-        gmf.save(temporary, container)
-        if fields:  # first, so that no new mesh is left with old fields when they fail
-            write_solution(path.with_suffix(SOLUTION_OF[suffix_of(path)]), mesh, fields)
+    solution = path.with_suffix(SOLUTION_OF[suffix_of(path)])
+    # Together, so that no new mesh is left with old fields, nor the reverse, when one fails.
+    with all_replaced([path, solution] if fields else [path]) as temporaries:
+        gmf.save(temporaries[0], container)
+        if fields:
+            gmf.save(temporaries[1], _solution_container(solution, mesh, fields))
     if not fields and (stale := solution_beside(path)) is not None:
         _log.warning("%s: %s is left from before and will be read with it", path, stale.name)
 
 
 def write_solution(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
     """Write fields; several fields are interleaved point by point, cell by cell."""
+    container = _solution_container(path, mesh, fields)
+    with replaced(path) as temporary:
+        gmf.save(temporary, container)
+
+
+def _solution_container(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> gmf.Container:
     container = gmf.Container(dim=mesh.dim)
     cells = "SolAtTriangles" if mesh.dim == 2 else "SolAtTetrahedra"
     noted: dict[str, list[list[str]]] = {}
@@ -160,8 +168,7 @@ def write_solution(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
         noted[where] = [[name, str(field.kind)] for name, field in chosen.items()]
     if suffix_of(path) not in BINARY:
         container.notes["fields"] = noted
-    with replaced(path) as temporary:
-        gmf.save(temporary, container)
+    return container
 
 
 def _columns(path: Path, name: str, field: Field) -> Array:
