@@ -7,7 +7,7 @@ import argparse
 from ..adapt import Adapted, adapt
 from ..formats import read, write, write_metric
 from . import console
-from .files import metric_target, writable
+from .files import metric_target, replaced_inputs, writable
 from .options import (
     adapt_options,
     add_metric_options,
@@ -46,9 +46,12 @@ def run(arguments: argparse.Namespace) -> int:
     mesh, fields = read(arguments.input)
     geometry = read(arguments.geometry)[0] if arguments.geometry else None
     done = adapt(mesh, fields, options, geometry=geometry)
+    inputs = (arguments.input, arguments.geometry)
+    replaced = replaced_inputs(inputs, output, metric_output)
     write(output, done.mesh, done.fields)
     if metric_output is not None:
         write_metric(metric_output, done.mesh, done.metric)
+    console.say_replaced(replaced, "the adapted mesh", beside_json=arguments.json)
     if arguments.json:
         console.show_json(done.report)
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import Any
 
 from ..cell_arrays import cell_arrays
@@ -15,7 +16,7 @@ from ..topology import Float
 from ..validation import validate
 from ..violations import Violation
 from . import console
-from .files import writable, writable_file
+from .files import replaced_inputs, writable, writable_file
 
 SUMMARY = "check a mesh; measure and certify it in a metric"
 EXAMPLE = "anistar check out.mesh --metric out.sol --reference in.mesh -o figures.vtu"
@@ -77,7 +78,10 @@ def _check_targets(arguments: argparse.Namespace) -> None:
 
 def _write(arguments: argparse.Namespace, mesh: Mesh, M: Float, certificate: Certificate) -> None:
     if arguments.output:
+        inputs = (arguments.input, arguments.reference, arguments.metric)
+        replaced = replaced_inputs(inputs, Path(arguments.output))
         write(arguments.output, mesh, cell_arrays(mesh, M, certificate))
+        console.say_replaced(replaced, "the figures", beside_json=arguments.json)
     if arguments.picture:
         if mesh.dim != 2:
             raise ValueError(f"--picture is for 2D meshes; this one has dimension {mesh.dim}")

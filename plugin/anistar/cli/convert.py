@@ -6,7 +6,7 @@ import argparse
 
 from ..formats import read_with_report, write
 from . import console
-from .files import writable
+from .files import replaced_inputs, writable
 
 SUMMARY = "write a mesh and its fields in another format"
 EXAMPLE = "anistar convert in.msh out.vtu"
@@ -22,7 +22,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output, is_mesh=False)
     mesh, fields, report = read_with_report(arguments.input)
+    replaced = replaced_inputs([arguments.input], output)
     write(output, mesh, fields)
+    console.say_replaced(replaced, "what was read from it", beside_json=arguments.json)
     if arguments.json:
         console.show_json(report)
     else:

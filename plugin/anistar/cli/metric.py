@@ -29,7 +29,7 @@ from ..metric import (
 from ..metric.finishing import finishing_on
 from ..metric.options import TARGETS
 from . import console
-from .files import writable
+from .files import replaced_inputs, writable
 from .metric_goals import add_goal_arguments, goal_metrics, has_goals
 from .metric_sources import add_source_arguments, has_sources, sources
 from .options import adapt_options, add_metric_options, numbers
@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
         chosen = {name: fields[name] for name in names}
         M, ledger = from_fields(mesh, chosen, options.metric)
         if not has_sources(arguments) and arguments.step is None:
-            write_metric(output, mesh, M)
+            _write(arguments, output, mesh, M)
             _show(arguments, ledger, [[s.name, s.complexity, s.remark] for s in ledger.stages])
             return 0
         parts = {"fields": M}
@@ -106,7 +106,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         parts = {}
     M, report = _combined(mesh, {**parts, **sources(mesh, arguments)}, arguments, options.metric)
-    write_metric(output, mesh, M)
+    _write(arguments, output, mesh, M)
     _show(arguments, report, [[name, C, ""] for name, C in report.complexities.items()])
     return 0
 
@@ -156,7 +156,8 @@ def _run_instants(
     ]
     metrics, ledger = from_instants(meshes, chosen, options, time_steps=arguments.time_steps)
     for i, (mesh, M) in enumerate(zip(meshes, metrics, strict=True)):
-        write_metric(output.with_name(f"{output.stem}_{i:03}{output.suffix}"), mesh, M)
+        numbered = output.with_name(f"{output.stem}_{i:03}{output.suffix}")
+        _write(arguments, numbered, mesh, M)
     if arguments.json:
         console.show_json(ledger)
         return 0
@@ -167,6 +168,12 @@ def _run_instants(
     title = f"space-time complexity {ledger.complexity:.1f}"
     console.show_table(title, ["instant", "time steps", "complexity"], rows)
     return 0
+
+
+def _write(arguments: argparse.Namespace, output: Path, mesh: Mesh, M: Floats) -> None:
+    replaced = replaced_inputs([*arguments.input, *arguments.given], output)
+    write_metric(output, mesh, M)
+    console.say_replaced(replaced, "the metric", beside_json=arguments.json)
 
 
 def _show(arguments: argparse.Namespace, report: Any, rows: list[list[Any]]) -> None:

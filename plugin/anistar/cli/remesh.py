@@ -13,7 +13,7 @@ from ..remesh import remesh
 from ..remesh_report import RemeshReport
 from ..transfer import transfer
 from . import console
-from .files import metric_target, writable
+from .files import metric_target, replaced_inputs, writable
 from .options import adapt_options, add_remesh_options
 
 SUMMARY = "remesh to a given metric, and carry the fields over"
@@ -56,9 +56,12 @@ def run(arguments: argparse.Namespace) -> int:
     fields = transfer(mesh, carried, done.mesh, options.transfer).fields
     if metric_output is None and not fields and suffix_of(output) in SOLUTION_OF:
         fields = {METRIC: Field(done.metric)}
+    inputs = (arguments.input, str(source), arguments.geometry)
+    replaced = replaced_inputs(inputs, output, metric_output)
     write(output, done.mesh, fields)
     if metric_output is not None:
         write_metric(metric_output, done.mesh, done.metric)
+    console.say_replaced(replaced, "the new mesh", beside_json=arguments.json)
     if arguments.json:
         console.show_json(done.report)
     else:

@@ -8,7 +8,7 @@ from typing import Any
 from ..formats import read, write
 from ..transfer import METHODS, FieldChange, TransferOptions, TransferReport, transfer
 from . import console
-from .files import writable
+from .files import replaced_inputs, writable
 from .options import add_outside_option
 
 SUMMARY = "carry the fields of one mesh to another"
@@ -50,7 +50,9 @@ def run(arguments: argparse.Namespace) -> int:
     source, fields = read(arguments.source)
     target, _ = read(arguments.target)
     done = transfer(source, fields, target, options)
+    replaced = replaced_inputs((arguments.source, arguments.target), output)
     write(output, target, done.fields)
+    console.say_replaced(replaced, "the fields carried over", beside_json=arguments.json)
     if arguments.json:
         console.show_json(done.report)
         return 0
