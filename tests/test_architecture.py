@@ -27,7 +27,7 @@ CORE_FOLDERS = [
 # 2D and 3D know nothing of each other.
 APART = [("plane", "surface"), ("plane", "volume")]
 
-MADE_BY_COMMANDS = {"anistar-demo", "build", "dist"}
+MADE_BY_COMMANDS = {"anistar-demo", "anistar-demo-3d", "build", "dist"}
 
 # The demo is an example that ships inside the package; it solves with scikit-fem.
 DEMO_PROBLEM = "anistar.demo_problem"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import suppress
 from typing import Any
 
 from ..demand import check_targets
+from ..errors import FormatError
 from ..file_solver import FILE_KINDS, FileSolver
 from ..formats import read
 from ..loop import Loop, LoopError, LoopOptions, Step, adapt_loop
@@ -113,7 +115,8 @@ def _looped(
         try:
             loop = adapt_loop(solve, first, options, callback=moved, finished=finished)
         except LoopError as error:
-            folder.close(error.loop)
+            with suppress(FormatError):  # the disk that is full, say, is in the first error
+                folder.close(error.loop)
             raise
         except KeyboardInterrupt:
             folder.close(Loop(tuple(folder.steps), "interrupted"))
