@@ -57,6 +57,10 @@ CASES = {
         "adapt in.vtu --target-complexity 9 -o o.mesh --metric-output o.sol",
         "the metric cannot go to o.sol: the mesh or its fields are written there",
     ),
+    "metric over the fields, another way": (
+        "adapt in.vtu --target-complexity 9 -o o.mesh --metric-output folder.vtu/../o.sol",
+        "the metric cannot go to folder.vtu/../o.sol: the mesh or its fields are written there",
+    ),
     "unknown recovery": (
         "adapt in.vtu -o o.vtu --target-complexity 9 --method magic",
         "recovery method must be one of auto, quadratic, l2, mixed_l2, zz, clement, green, got",

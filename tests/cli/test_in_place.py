@@ -111,3 +111,10 @@ def test_the_input_is_not_lost_when_writing_fails(folder, monkeypatch, case):
         disk.setattr(os, "fsync", full)
         assert main(CASES[case][0].split()) == 2
     assert {path: path.read_bytes() for path in Path().iterdir() if path.is_file()} == before
+
+
+def test_a_file_that_is_read_only_stays(folder, monkeypatch, capsys):
+    # As the system answers to all but the administrator, who may run the tests.
+    monkeypatch.setattr("os.access", lambda path, mode: Path(path).is_dir())
+    assert main(CASES["adapt"][0].split()) == 2
+    assert "cannot write in.vtu: it is read-only" in capsys.readouterr().err

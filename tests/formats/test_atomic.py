@@ -110,6 +110,13 @@ def test_files_that_belong_together_are_replaced_together(tmp_path, monkeypatch,
     assert sorted(tmp_path.iterdir()) == paths
 
 
+def test_what_others_may_not_read_stays_so(tmp_path):
+    path = tmp_path / "in.vtu"
+    path.touch(mode=0o600)
+    write(path, square(2))
+    assert path.stat().st_mode & 0o777 == 0o600
+
+
 def test_what_cannot_be_written_is_named(tmp_path):
     (tmp_path / "file").write_text("")
     for path, reason in (

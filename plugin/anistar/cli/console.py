@@ -16,7 +16,7 @@ from rich.table import Table
 
 from ..remesh_report import RemeshReport
 from ..report import to_json
-from .streams import readers_may_leave
+from .streams import complain, readers_may_leave
 
 
 class _Terminal(Console):
@@ -46,23 +46,30 @@ def show_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]
 
 
 @readers_may_leave()
-def say(text: str, *, beside_json: bool = False) -> None:
+def say(text: str) -> None:
+    """Print one line on stdout."""
+    _Terminal().print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def note(text: str, *, beside_json: bool) -> None:
     """Print one line on stdout, or on stderr where stdout is JSON."""
-    terminal = _Terminal(stderr=beside_json)
-    terminal.print(text, highlight=False, markup=False, soft_wrap=True)
+    if beside_json:
+        complain(text)
+    else:
+        say(text)
 
 
 def say_removed(count: int, folder: Path, *, beside_json: bool) -> None:
     """Tell that files of an earlier run were removed, if there were any."""
     if count:
-        say(f"{folder}: {count} files of an earlier run removed", beside_json=beside_json)
+        note(f"{folder}: {count} files of an earlier run removed", beside_json=beside_json)
 
 
 def say_replaced(paths: Sequence[str], by: str, *, beside_json: bool) -> None:
     """Tell that the output went to the place of input files, if it did."""
     if paths:
         verb = "are" if len(paths) > 1 else "is"
-        say(f"{' and '.join(paths)} {verb} replaced by {by}", beside_json=beside_json)
+        note(f"{' and '.join(paths)} {verb} replaced by {by}", beside_json=beside_json)
 
 
 def as_text(value: Any) -> str:

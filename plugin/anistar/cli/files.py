@@ -34,8 +34,8 @@ def writable_file(path: str) -> Path:
     Raises
     ------
     FormatError
-        If the folder does not exist or cannot be written, or the path is a folder or has no
-        suffix.
+        If the folder does not exist or cannot be written, or the path is a folder, a file that
+        is read-only, or has no suffix.
     """
     target = Path(path)
     if target.is_dir():
@@ -48,6 +48,8 @@ def writable_file(path: str) -> Path:
         raise FormatError(f"cannot write {target}: no such folder {target.parent}")
     if not os.access(target.parent, os.W_OK):
         raise FormatError(f"cannot write {target}: folder {target.parent} is not writable")
+    if target.exists() and not os.access(target, os.W_OK):
+        raise FormatError(f"cannot write {target}: it is read-only")
     return target
 
 
@@ -120,10 +122,8 @@ def metric_target(path: str | None, mesh_output: Path) -> Path | None:
     if not path:
         return None
     target = writable(path, is_mesh=False)
-    if target in (
-        mesh_output,
-        mesh_output.with_suffix(SOLUTION_OF.get(suffix_of(mesh_output), "")),
-    ):
+    solution = mesh_output.with_suffix(SOLUTION_OF.get(suffix_of(mesh_output), ""))
+    if _is_same(target, mesh_output) or _is_same(target, solution):
         raise ValueError(
             f"the metric cannot go to {target}: the mesh or its fields are written there"
         )

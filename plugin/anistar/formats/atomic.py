@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import re
+import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -82,6 +83,8 @@ def all_replaced(paths: Sequence[Path]) -> Iterator[list[Path]]:
                 _bring_to_disk(temporary)
         for path, temporary, target in staged:
             with _writing(path):
+                if target.exists():
+                    shutil.copymode(target, temporary)
                 temporary.replace(target)
     finally:
         for temporary in temporaries:
