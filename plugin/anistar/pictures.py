@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .certificate import Certificate
+from .formats.atomic import replaced
 from .mesh import Mesh
 from .topology import unique_edges
 
@@ -282,4 +284,8 @@ def _draw_boundary(axes: Any, mesh: Mesh) -> None:
 
 
 def _save(figure: Any, path: Target) -> None:
-    figure.savefig(path, dpi=_DPI)
+    if isinstance(path, str | os.PathLike):
+        with replaced(Path(path)) as temporary:
+            figure.savefig(temporary, dpi=_DPI)
+    else:
+        figure.savefig(path, dpi=_DPI)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
-from contextlib import AbstractContextManager
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -95,6 +95,7 @@ class RunFolder:
         own.remove_leftovers()
         if not force:
             own.require_none("--resume goes on with it, --force replaces it")
+            return 0
         return self._own_files(self.settings, self._earlier_settings()).remove(keep)
 
     def _own_files(self, *settings: Mapping[str, Any]) -> OwnFiles:
@@ -105,11 +106,12 @@ class RunFolder:
 
     def _earlier_settings(self) -> Mapping[str, Any]:
         """Return the settings of the run that is replaced, nothing where its report is damaged."""
+        path = self.folder / REPORT
         try:
-            settings = json.loads((self.folder / REPORT).read_text(encoding="utf-8"))["settings"]
-        except (OSError, ValueError, KeyError, TypeError):
+            with _understood(path):
+                return dict(json.loads(path.read_text(encoding="utf-8"))["settings"])
+        except (OSError, FormatError):
             return {}
-        return settings if isinstance(settings, dict) else {}
 
     def save(self, step: Step) -> None:
         """Add a finished step."""
@@ -137,13 +139,12 @@ class RunFolder:
         self._own_files(self.settings).remove_leftovers()
         if not path.is_file():
             return []
-        try:
+        with _understood(path):
             report = json.loads(path.read_text(encoding="utf-8"))
-            recorded, settings = report["steps"], report["settings"]
-        except (ValueError, KeyError, TypeError) as error:
-            raise FormatError(f"{path} is no report of a loop: {error}") from error
+            recorded, settings = list(report["steps"]), dict(report["settings"])
         self._require_same(settings)
-        self.steps = [self._step(number, said) for number, said in enumerate(recorded)]
+        with _understood(path):
+            self.steps = [self._step(number, said) for number, said in enumerate(recorded)]
         return list(self.steps)
 
     def _require_same(self, settings: Mapping[str, Any]) -> None:
@@ -171,3 +172,15 @@ class RunFolder:
 
     def _report(self, loop: Loop) -> None:
         write_json(self.folder / REPORT, {"settings": self.settings, **loop.as_dict()})
+
+
+@contextmanager
+def _understood(path: Path) -> Iterator[None]:
+    """Name the report in what goes wrong when it is read."""
+    try:
+        yield
+    except FormatError:  # of a mesh, which it names
+        raise
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        reason = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
+        raise FormatError(f"{path} is no report of a loop: {reason}") from error

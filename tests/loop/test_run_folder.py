@@ -138,10 +138,25 @@ def test_every_format_goes_to_the_solver_and_back(folder, kind):
     assert np.allclose(u.values, np.tanh(10 * (mesh.points.sum(axis=1) - 1.1)))
 
 
-def test_a_damaged_report_is_named(tmp_path):
-    (tmp_path / "report.json").write_text('{"steps": 3')
+@pytest.mark.parametrize(
+    "content",
+    [
+        '{"steps": 3',
+        '{"steps": 3, "settings": {}}',
+        '{"steps": [], "settings": 3}',
+        '{"steps": [3], "settings": {}}',
+        '{"steps": [{"iteration": 0}], "settings": {}}',
+        '{"settings": {}}',
+        "[" * 100_000,
+    ],
+)
+def test_a_damaged_report_is_named_and_can_be_replaced(tmp_path, content):
+    (tmp_path / "report.json").write_text(content)
+    anistar.write(tmp_path / "series_000.vtu", square(1))
     with pytest.raises(FormatError, match=r"report\.json is no report of a loop"):
         RunFolder(tmp_path, {}).load()
+    assert RunFolder(tmp_path, {}).begin(force=True) == 2
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_finished_steps_of_a_python_loop_are_taken_up():
