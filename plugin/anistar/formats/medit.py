@@ -19,6 +19,7 @@ from ..mesh import Mesh
 from ..metric.tensor_orders import from_components, to_components
 from . import gmf
 from .atomic import all_replaced, replaced
+from .gmf_container import Container, Solution, columns_of
 from .raw import Array, Block, RawMesh
 from .suffixes import BINARY, SOLUTION_OF, solution_beside, suffix_of
 
@@ -57,7 +58,7 @@ def read_mesh(path: Path) -> RawMesh:
     return raw
 
 
-def _tables(container: gmf.Container, kinds: Mapping[str, str]) -> list[tuple[str, Array]]:
+def _tables(container: Container, kinds: Mapping[str, str]) -> list[tuple[str, Array]]:
     return [
         (kind, container.tables[keyword])
         for keyword, kind in kinds.items()
@@ -65,7 +66,7 @@ def _tables(container: gmf.Container, kinds: Mapping[str, str]) -> list[tuple[st
     ]
 
 
-def _names(container: gmf.Container, path: Path) -> list[list[Any]]:
+def _names(container: Container, path: Path) -> list[list[Any]]:
     names = container.notes.get("names", [])
     if not all(isinstance(entry, list) and len(entry) == 3 for entry in names):
         raise FormatError(f"cannot read {path}: the names in its comments are damaged")
@@ -93,7 +94,7 @@ def _add_fields(raw: RawMesh, path: Path) -> None:
     }
 
 
-def solution_arrays(container: gmf.Container, keyword: str, where: str) -> dict[str, Array]:
+def solution_arrays(container: Container, keyword: str, where: str) -> dict[str, Array]:
     """Return the fields of one section by name: (k,), (k, d) or (k, d, d) arrays."""
     solution = container.solutions.get(keyword)
     if solution is None:
@@ -101,7 +102,7 @@ def solution_arrays(container: gmf.Container, keyword: str, where: str) -> dict[
     listed = [name for name, _ in container.notes.get("fields", {}).get(where, [])]
     arrays: dict[str, Array] = {}
     at = 0
-    for i, width in enumerate(gmf.columns_of(solution.types, container.dim)):
+    for i, width in enumerate(columns_of(solution.types, container.dim)):
         code = solution.types[i]
         values = solution.values[:, at : at + width]
         at += width
@@ -124,7 +125,7 @@ def write_mesh(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
     if mesh.dim == 2:
         tables = {"Edges": mesh.facets, "Triangles": mesh.cells}
         tags = {"Edges": mesh.facet_tags, "Triangles": mesh.cell_tags}
-    container = gmf.Container(dim=mesh.dim, points=mesh.points)
+    container = Container(dim=mesh.dim, points=mesh.points)
     for keyword, rows in tables.items():
         if len(rows):
             container.tables[keyword] = np.c_[rows.astype(np.int64) + 1, tags[keyword]]
@@ -154,8 +155,8 @@ def write_solution(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
         gmf.save(temporary, container)
 
 
-def _solution_container(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> gmf.Container:
-    container = gmf.Container(dim=mesh.dim)
+def _solution_container(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> Container:
+    container = Container(dim=mesh.dim)
     cells = "SolAtTriangles" if mesh.dim == 2 else "SolAtTetrahedra"
     noted: dict[str, list[list[str]]] = {}
     for keyword, where in (("SolAtVertices", "points"), (cells, "cells")):
@@ -164,7 +165,7 @@ def _solution_container(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> 
             continue
         columns = [_columns(path, name, field) for name, field in chosen.items()]
         types = [_TYPES[str(field.kind)] for field in chosen.values()]
-        container.solutions[keyword] = gmf.Solution(types, np.concatenate(columns, axis=1))
+        container.solutions[keyword] = Solution(types, np.concatenate(columns, axis=1))
         noted[where] = [[name, str(field.kind)] for name, field in chosen.items()]
     if suffix_of(path) not in BINARY:
         container.notes["fields"] = noted

@@ -1,0 +1,119 @@
+"""The binary encoding of GMF: `.meshb` and `.solb`, a chain of records by keyword code.
+
+References
+----------
+libMeshb 7, `libmeshb7.c`. Versions: 1 has float32, 2 float64, 3 int64 offsets, 4 int64 throughout.
+Version 2 is written, because Mmg reads offsets as four bytes.
+"""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+
+from ..errors import FormatError
+from .cursor import Cursor
+from .gmf_container import ENTITIES, SOLUTIONS, Container, Solution, checked_dim, columns_of
+
+_DIMENSION, _VERTICES, _END = 3, 4, 54
+
+
+def from_bytes(data: bytes) -> Container:
+    """Return the content of a binary file.
+
+    Raises
+    ------
+    FormatError
+        If it is truncated or not what it says.
+    """
+    try:
+        return _Binary(data).container()
+    except ValueError as error:
+        raise FormatError(str(error)) from error
+
+
+class _Binary:
+    """The chain of records of a binary file."""
+
+    def __init__(self, data: bytes) -> None:
+        if len(data) < 8:
+            raise FormatError("it is truncated: no header")
+        self._cursor = Cursor(data, "<" if data[:4] == b"\x01\0\0\0" else ">")
+        if self._cursor.integer("i4") != 1:
+            raise FormatError("it is not a GMF file: the first word is not 1")
+        version = self._cursor.integer("i4")
+        if not 1 <= version <= 4:
+            raise FormatError(f"version {version} is not known, only 1 to 4")
+        self._real = "f4" if version == 1 else "f8"
+        self._index = "i8" if version == 4 else "i4"
+        self._offset = "i8" if version >= 3 else "i4"
+
+    def container(self) -> Container:
+        """Walk the chain of keywords."""
+        result: Container | None = None
+        names = {code: keyword for keyword, (code, _) in ENTITIES.items()}
+        names |= {code: keyword for keyword, code in SOLUTIONS.items()}
+        while (code := self._cursor.integer("i4")) != _END:
+            following = self._cursor.integer(self._offset)
+            if code == _DIMENSION:
+                result = Container(dim=checked_dim(self._cursor.integer("i4")))
+            elif result is None:
+                raise FormatError("its first keyword is not Dimension")
+            elif code == _VERTICES:
+                self._read_points(result)
+            elif code in names:
+                self._read_named(result, names[code])
+            if following == 0:
+                break
+            if following < self._cursor.at:
+                raise FormatError(f"the offset {following} points back: the file is damaged")
+            self._cursor.at = following
+        if result is None:
+            raise FormatError("it has no Dimension")
+        return result
+
+    def _read_points(self, result: Container) -> None:
+        layout = np.dtype([("x", self._real, (result.dim,)), ("r", self._index)])
+        rows = self._cursor.take(
+            layout.newbyteorder(self._cursor.order), self._cursor.integer(self._index)
+        )
+        result.points, result.point_refs = rows["x"].astype(np.float64), rows["r"].astype(np.int64)
+
+    def _read_named(self, result: Container, keyword: str) -> None:
+        count = self._cursor.integer(self._index)
+        if keyword in ENTITIES:
+            width = ENTITIES[keyword][1]
+            flat = self._cursor.take(self._index, count * width)
+            result.tables[keyword] = flat.reshape(count, width).astype(np.int64)
+            return
+        types = [self._cursor.integer("i4") for _ in range(self._cursor.integer("i4"))]
+        width = sum(columns_of(types, result.dim))
+        flat = self._cursor.take(self._real, count * width)
+        result.solutions[keyword] = Solution(types, flat.reshape(count, width).astype(np.float64))
+
+
+def to_bytes(container: Container) -> bytes:
+    """Return a container as a file of version 2."""
+    records: list[tuple[int, bytes]] = []
+    if container.points is not None:
+        rows = np.empty(
+            len(container.points), np.dtype([("x", "<f8", (container.dim,)), ("r", "<i4")])
+        )
+        rows["x"], rows["r"] = container.points, container.references()
+        records.append((_VERTICES, struct.pack("<i", len(rows)) + rows.tobytes()))
+    for keyword, table in container.tables.items():
+        head = struct.pack("<i", len(table))
+        records.append((ENTITIES[keyword][0], head + table.astype("<i4").tobytes()))
+    for keyword, solution in container.solutions.items():
+        types = (len(solution.values), len(solution.types), *solution.types)
+        head = struct.pack(f"<{len(types)}i", *types)
+        records.append((SOLUTIONS[keyword], head + solution.values.astype("<f8").tobytes()))
+    out = [struct.pack("<iiiii", 1, 2, _DIMENSION, 20, container.dim)]
+    at = 20
+    for code, payload in records:
+        at += 8 + len(payload)
+        out += [struct.pack("<ii", code, at), payload]
+    if at + 8 >= 2**31:
+        raise FormatError("more than 2 GiB do not fit in version 2 of the format")
+    return b"".join([*out, struct.pack("<ii", _END, 0)])
