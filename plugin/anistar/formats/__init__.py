@@ -15,7 +15,7 @@ from ..errors import FormatError
 from ..fields import Field, as_fields
 from ..mesh import Mesh
 from ..topology import Float
-from . import gmf, gmsh, medit, meshio_guard, su2, vtu
+from . import gmsh, medit, meshio_guard, su2, vtu
 from .assembly import ReadReport, assembled
 from .atomic import replaced
 from .export import exported
@@ -176,7 +176,7 @@ def read_metric(path: PathLike, mesh: Mesh) -> Float:
 
 def _metric_field(path: Path) -> tuple[str, Any]:
     if suffix_of(path) in SOLUTIONS:
-        arrays = medit.solution_arrays(gmf.load(path), "SolAtVertices", "points")
+        arrays = medit.read_solution(path).arrays("SolAtVertices")
         if len(arrays) != 1:
             raise FormatError(f"{path}: a metric is one field at the points, not {len(arrays)}")
         return next(iter(arrays.items()))

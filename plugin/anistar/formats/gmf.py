@@ -1,17 +1,17 @@
 """The GMF container behind `.mesh`, `.meshb`, `.sol` and `.solb`, in either encoding.
 
 Both are read into, and written from, one `Container`. Keywords that are not listed there are
-skipped.
+skipped and told.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from ..errors import FormatError
 from .gmf_binary import from_bytes, to_bytes
 from .gmf_container import Container
 from .gmf_text import from_text, to_text
+from .reading import reading
 from .suffixes import BINARY, suffix_of
 
 
@@ -23,14 +23,10 @@ def load(path: Path) -> Container:
     FormatError
         If the file is unreadable, truncated or not what it says.
     """
-    try:
+    with reading(path):
         if suffix_of(path) in BINARY:
             return from_bytes(path.read_bytes())
         return from_text(path.read_text(encoding="utf-8", errors="replace"))
-    except OSError as error:
-        raise FormatError(f"cannot read {path}: {error.strerror or error}") from error
-    except FormatError as error:
-        raise FormatError(f"cannot read {path}: {error}") from error
 
 
 def save(path: Path, container: Container) -> None:

@@ -14,9 +14,24 @@ import numpy as np
 
 from ..errors import FormatError
 from .cursor import Cursor
-from .gmf_container import ENTITIES, SOLUTIONS, Container, Solution, checked_dim, columns_of
+from .gmf_container import (
+    ENTITIES,
+    SOLUTIONS,
+    WITHOUT_CONTENT,
+    Container,
+    Solution,
+    checked_dim,
+    columns_of,
+)
 
 _DIMENSION, _VERTICES, _END = 3, 4, 54
+_UNREAD = set(WITHOUT_CONTENT.values())
+_NAMES = {
+    _DIMENSION: "Dimension",
+    _VERTICES: "Vertices",
+    **{code: keyword for keyword, (code, _) in ENTITIES.items()},
+    **{code: keyword for keyword, code in (SOLUTIONS | WITHOUT_CONTENT).items()},
+}
 
 
 def from_bytes(data: bytes) -> Container:
@@ -24,13 +39,10 @@ def from_bytes(data: bytes) -> Container:
 
     Raises
     ------
-    FormatError
+    ValueError
         If it is truncated or not what it says.
     """
-    try:
-        return _Binary(data).container()
-    except ValueError as error:
-        raise FormatError(str(error)) from error
+    return _Binary(data).container()
 
 
 class _Binary:
@@ -38,40 +50,57 @@ class _Binary:
 
     def __init__(self, data: bytes) -> None:
         if len(data) < 8:
-            raise FormatError("it is truncated: no header")
+            raise ValueError("it is truncated: no header")
         self._cursor = Cursor(data, "<" if data[:4] == b"\x01\0\0\0" else ">")
         if self._cursor.integer("i4") != 1:
-            raise FormatError("it is not a GMF file: the first word is not 1")
+            raise ValueError("it is not a GMF file: the first word is not 1")
         version = self._cursor.integer("i4")
         if not 1 <= version <= 4:
-            raise FormatError(f"version {version} is not known, only 1 to 4")
+            raise ValueError(f"version {version} is not known, only 1 to 4")
         self._real = "f4" if version == 1 else "f8"
         self._index = "i8" if version == 4 else "i4"
         self._offset = "i8" if version >= 3 else "i4"
 
     def container(self) -> Container:
-        """Walk the chain of keywords."""
+        """Walk the chain of keywords to its end, which must be that of the file."""
         result: Container | None = None
-        names = {code: keyword for keyword, (code, _) in ENTITIES.items()}
-        names |= {code: keyword for keyword, code in SOLUTIONS.items()}
-        while (code := self._cursor.integer("i4")) != _END:
-            following = self._cursor.integer(self._offset)
+        cursor, seen = self._cursor, set()
+        while (code := cursor.integer("i4")) != _END:
+            following = cursor.integer(self._offset)
+            if code in seen:
+                raise ValueError(f"it has two sections {_name(code)}: only one can be meant")
+            seen.add(code)
             if code == _DIMENSION:
-                result = Container(dim=checked_dim(self._cursor.integer("i4")))
+                result = Container(dim=checked_dim(cursor.integer("i4")))
             elif result is None:
-                raise FormatError("its first keyword is not Dimension")
-            elif code == _VERTICES:
-                self._read_points(result)
-            elif code in names:
-                self._read_named(result, names[code])
-            if following == 0:
-                break
-            if following < self._cursor.at:
-                raise FormatError(f"the offset {following} points back: the file is damaged")
-            self._cursor.at = following
+                raise ValueError("its first keyword is not Dimension")
+            else:
+                self._read(result, code, following)
+            if following < cursor.at:
+                raise ValueError(f"the offset {following} points back: the file is damaged")
+            if following > cursor.at and code not in _UNREAD and code in _NAMES:
+                raise ValueError(
+                    f"{following - cursor.at} bytes follow the last row of {_name(code)}"
+                )
+            cursor.at = following
+        self._check_end()
         if result is None:
-            raise FormatError("it has no Dimension")
+            raise ValueError("it has no Dimension")
         return result
+
+    def _check_end(self) -> None:
+        """Raise if anything follows the keyword End but its offset and padding."""
+        left = self._cursor.data[self._cursor.at + np.dtype(self._offset).itemsize :]
+        if left.strip(b"\0"):
+            raise ValueError(f"{len(left)} bytes follow its keyword End")
+
+    def _read(self, result: Container, code: int, following: int) -> None:
+        if code == _VERTICES:
+            self._read_points(result)
+        elif code in _NAMES and code not in _UNREAD:
+            self._read_named(result, _NAMES[code])
+        elif code not in _UNREAD and following > self._cursor.at:
+            result.skipped.append(_name(code))
 
     def _read_points(self, result: Container) -> None:
         layout = np.dtype([("x", self._real, (result.dim,)), ("r", self._index)])
@@ -87,10 +116,14 @@ class _Binary:
             flat = self._cursor.take(self._index, count * width)
             result.tables[keyword] = flat.reshape(count, width).astype(np.int64)
             return
-        types = [self._cursor.integer("i4") for _ in range(self._cursor.integer("i4"))]
+        types = self._cursor.take("i4", self._cursor.integer("i4")).tolist()
         width = sum(columns_of(types, result.dim))
         flat = self._cursor.take(self._real, count * width)
         result.solutions[keyword] = Solution(types, flat.reshape(count, width).astype(np.float64))
+
+
+def _name(code: int) -> str:
+    return _NAMES.get(code, f"of code {code}")
 
 
 def to_bytes(container: Container) -> bytes:

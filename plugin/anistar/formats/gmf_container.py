@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import FormatError
-
 # keyword -> (code, integers in a row); Vertices and SolAt* have their own layout.
 ENTITIES = {
     "Edges": (5, 3),
@@ -31,6 +29,26 @@ ENTITIES = {
 SOLUTIONS = {"SolAtVertices": 62, "SolAtTriangles": 64, "SolAtTetrahedra": 66}
 
 
+# What comments may hold: names of tags in a mesh, names and kinds of fields in a solution.
+NOTES = ("names", "fields")
+# Sections that say nothing a mesh here could hold, or nothing that it does not know by itself.
+WITHOUT_CONTENT = {
+    "RequiredQuadrilaterals": 18,
+    "TangentAtEdgeVertices": 19,
+    "NormalAtVertices": 20,
+    "NormalAtTriangleVertices": 21,
+    "NormalAtQuadrilateralVertices": 22,
+    "AngleOfCornerBound": 23,
+    "SubDomainFromGeom": 29,
+    "BoundingBox": 50,
+    "Tangents": 59,
+    "Normals": 60,
+    "TangentAtVertices": 61,
+    "Time": 12,
+    "Iterations": 11,
+}
+
+
 @dataclass
 class Solution:
     """Fields on one kind of entity: type codes (1 scalar, 2 vector, 3 tensor) and all columns."""
@@ -50,6 +68,8 @@ class Container:
     tables : dict of keyword to (k, w) int64
     solutions : dict of keyword to Solution
     notes : dict of str to JSON values, kept in comments of the text encoding only
+    skipped : list of str
+        Sections that were not read although they may hold something.
     """
 
     dim: int
@@ -58,6 +78,7 @@ class Container:
     tables: dict[str, NDArray[np.int64]] = field(default_factory=dict)
     solutions: dict[str, Solution] = field(default_factory=dict)
     notes: dict[str, Any] = field(default_factory=dict)
+    skipped: list[str] = field(default_factory=list)
 
     def references(self) -> NDArray[np.int64]:
         """Return the references of the points, zeros where there are none."""
@@ -69,14 +90,16 @@ class Container:
 def checked_dim(dim: int) -> int:
     """Return a dimension, which must be 2 or 3."""
     if dim not in (2, 3):
-        raise FormatError(f"Dimension is {dim}, it must be 2 or 3")
+        raise ValueError(f"Dimension is {dim}, it must be 2 or 3")
     return dim
 
 
 def columns_of(types: list[int], dim: int) -> list[int]:
-    """Return the number of columns of each field type."""
+    """Return the number of columns of each field type; raise ValueError if there is none."""
+    if not types:
+        raise ValueError("a solution has no fields")
     widths = {1: 1, 2: dim, 3: dim * (dim + 1) // 2, 4: dim * dim}
     try:
         return [widths[code] for code in types]
     except KeyError as error:
-        raise FormatError(f"unknown field type {error.args[0]}") from error
+        raise ValueError(f"unknown field type {error.args[0]}") from error

@@ -9,18 +9,20 @@ from __future__ import annotations
 import logging
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ..errors import FormatError
 from ..fields import Field
 from ..mesh import Mesh
-from ..metric.tensor_orders import from_components, to_components
+from ..metric.tensor_orders import to_components
 from . import gmf
 from .atomic import all_replaced, replaced
-from .gmf_container import Container, Solution, columns_of
+from .gmf_container import Container, Solution
+from .medit_solution import MeditSolution
+from .notes import names_of
 from .raw import Array, Block, RawMesh
+from .reading import reading
 from .suffixes import BINARY, SOLUTION_OF, solution_beside, suffix_of
 
 _log = logging.getLogger(__name__)
@@ -41,20 +43,26 @@ _TYPES = {"scalar": 1, "label": 1, "vector": 2, "tensor": 3}
 def read_mesh(path: Path) -> RawMesh:
     """Read a mesh and the fields in the solution file of the same name, if there is one."""
     container = gmf.load(path)
+    with reading(path):
+        raw = _mesh(container)
+    companion = solution_beside(path)
+    if companion is not None:
+        _add_fields(raw, companion, container.dim)
+    return raw
+
+
+def _mesh(container: Container) -> RawMesh:
     if container.points is None:
-        raise FormatError(f"cannot read {path}: it holds no vertices")
+        raise ValueError("it holds no vertices")
     blocks = [
         Block(kind, table[:, :-1] - 1, table[:, -1])
         for kind, table in _tables(container, {**_BLOCKS, **_REFUSED})
     ]
     nothing = np.zeros((0, 1), np.int64)
     kept = [container.tables.get(keyword, nothing) for keyword in ("Corners", "RequiredVertices")]
-    corners = np.concatenate(kept)[:, 0] - 1
-    raw = RawMesh(container.points, blocks, corners)
-    raw.names = {(int(dim), int(tag)): str(name) for dim, tag, name in _names(container, path)}
-    companion = solution_beside(path)
-    if companion is not None:
-        _add_fields(raw, companion)
+    raw = RawMesh(container.points, blocks, np.concatenate(kept)[:, 0] - 1)
+    raw.names = names_of(container.notes.get("names", []))
+    raw.warnings += [f"the section {name} is not known and not read" for name in container.skipped]
     return raw
 
 
@@ -66,56 +74,36 @@ def _tables(container: Container, kinds: Mapping[str, str]) -> list[tuple[str, A
     ]
 
 
-def _names(container: Container, path: Path) -> list[list[Any]]:
-    names = container.notes.get("names", [])
-    if not all(isinstance(entry, list) and len(entry) == 3 for entry in names):
-        raise FormatError(f"cannot read {path}: the names in its comments are damaged")
-    return list(names)
-
-
-def _add_fields(raw: RawMesh, path: Path) -> None:
-    container = gmf.load(path)
-    points = solution_arrays(container, "SolAtVertices", "points")
+def _add_fields(raw: RawMesh, path: Path, dim: int) -> None:
+    solution = read_solution(path)
+    if solution.dim != dim:
+        raise FormatError(f"{path} has dimension {solution.dim}, the mesh beside it {dim}")
+    points = solution.arrays("SolAtVertices")
     if any(len(values) != len(raw.points) for values in points.values()):
         text = f"{path.name} is not used: it has another number of points"
         raw.warnings.append(text)
         return
     raw.point_data.update(points)
-    for keyword, kind in (("SolAtTriangles", "triangle"), ("SolAtTetrahedra", "tetra")):
-        arrays = solution_arrays(container, keyword, "cells")
-        for block in raw.blocks:
-            if block.kind == kind:
-                block.data.update(arrays)
-    raw.labels = {
-        name
-        for listed in container.notes.get("fields", {}).values()
-        for name, kind in listed
-        if kind == "label"
-    }
+    cells, kind = ("SolAtTriangles", "triangle") if dim == 2 else ("SolAtTetrahedra", "tetra")
+    for block in raw.blocks:
+        if block.kind == kind:
+            block.data.update(solution.arrays(cells))
+    raw.labels = solution.labels
+    unread = {*solution.keywords} - {"SolAtVertices", cells}
+    raw.warnings += [f"{path.name}: the section {name} is not read" for name in sorted(unread)]
 
 
-def solution_arrays(container: Container, keyword: str, where: str) -> dict[str, Array]:
-    """Return the fields of one section by name: (k,), (k, d) or (k, d, d) arrays."""
-    solution = container.solutions.get(keyword)
-    if solution is None:
-        return {}
-    listed = [name for name, _ in container.notes.get("fields", {}).get(where, [])]
-    arrays: dict[str, Array] = {}
-    at = 0
-    for i, width in enumerate(columns_of(solution.types, container.dim)):
-        code = solution.types[i]
-        values = solution.values[:, at : at + width]
-        at += width
-        name = listed[i] if len(listed) == len(solution.types) else f"field{i}"
-        if code == 1:
-            arrays[name] = values[:, 0].copy()
-        elif code == 3:
-            arrays[name] = from_components(values, "medit")
-        elif code == 4:
-            arrays[name] = values.reshape(-1, container.dim, container.dim).copy()
-        else:
-            arrays[name] = values.copy()
-    return arrays
+def read_solution(path: Path) -> MeditSolution:
+    """Read a solution file.
+
+    Raises
+    ------
+    FormatError
+        If it is damaged, holds no solution, or not those that its comments name.
+    """
+    container = gmf.load(path)
+    with reading(path):
+        return MeditSolution(container)
 
 
 def write_mesh(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
