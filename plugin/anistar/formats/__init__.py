@@ -15,7 +15,19 @@ from ..errors import FormatError
 from ..fields import Field, as_fields
 from ..mesh import Mesh
 from ..topology import Float
-from . import gmsh, medit, meshio_guard, su2, vtu
+from . import (
+    gmsh,
+    gmsh_reader,
+    inp_reader,
+    medit,
+    meshio_writer,
+    su2,
+    su2_reader,
+    vtk_reader,
+    vtu,
+    vtu_reader,
+    xdmf_reader,
+)
 from .assembly import ReadReport, assembled
 from .atomic import replaced
 from .export import exported
@@ -40,7 +52,13 @@ PathLike = str | os.PathLike[str]
 _READERS: dict[str, Callable[[Path], RawMesh]] = {
     ".mesh": medit.read_mesh,
     ".meshb": medit.read_mesh,
-    ".msh": gmsh.read,
+    ".inp": inp_reader.read,
+    ".msh": gmsh_reader.read,
+    ".su2": su2_reader.read,
+    ".vtk": vtk_reader.read,
+    ".vtu": vtu_reader.read,
+    ".xdmf": xdmf_reader.read,
+    ".xmf": xdmf_reader.read,
 }
 _WRITERS: dict[str, Callable[[Path, Mesh, Mapping[str, Field]], None]] = {
     ".mesh": medit.write_mesh,
@@ -62,7 +80,8 @@ def read(path: PathLike) -> tuple[Mesh, dict[str, Field]]:
     ----------
     path : path
         Medit (`.mesh .meshb`, with the fields of a `.sol` or `.solb` of the same name), Gmsh
-        (`.msh`), VTU, or anything that meshio reads.
+        (`.msh`), VTK (`.vtu`, legacy `.vtk`), XDMF with its numbers inside (`.xdmf .xmf`), SU2
+        (`.su2`) or Abaqus (`.inp`).
 
     Returns
     -------
@@ -85,7 +104,13 @@ def read_with_report(path: PathLike) -> tuple[Mesh, dict[str, Field], ReadReport
         raise FormatError(f"cannot read {path}: a solution file holds no mesh, give the mesh file")
     if not path.is_file():
         raise FormatError(f"cannot read {path}: no such file")
-    return assembled(_READERS.get(suffix_of(path), meshio_guard.read)(path), path)
+    if suffix_of(path) not in _READERS:
+        raise FormatError(
+            f"cannot read {path}: files {path.suffix or 'without suffix'} are not read here; "
+            f"convert it to VTU or Gmsh, for example by `meshio convert {path.name} "
+            f"{path.stem}.vtu`"
+        )
+    return assembled(_READERS[suffix_of(path)](path), path)
 
 
 def write(
@@ -128,13 +153,13 @@ def write(
     if mesh.names:
         _log.warning("%s: this format has no names, they are not written", path)
     with replaced(path) as temporary:
-        meshio_guard.write(temporary, exported(mesh, checked), path)
+        meshio_writer.write(temporary, exported(mesh, checked), path)
 
 
 def is_known(path: PathLike) -> bool:
     """Return whether a format has the suffix of the path."""
     suffix = suffix_of(Path(path))
-    return suffix in (*_WRITERS, *SOLUTIONS) or meshio_guard.is_known(suffix)
+    return suffix in (*_WRITERS, *SOLUTIONS) or meshio_writer.is_known(suffix)
 
 
 def read_metric(path: PathLike, mesh: Mesh) -> Float:

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+_BLANKS = b" \t\r\n"
+
 
 class Cursor:
     """A place in the bytes of a file.
@@ -53,6 +55,11 @@ class Cursor:
         text = self.data[self.at : end].decode("utf-8", errors="replace")
         self.at = min(end + 1, len(self.data))
         return text.strip()
+
+    def skip_blanks(self) -> None:
+        """Go to the next byte that is no blank and ends no line."""
+        while not self.is_at_end and self.data[self.at] in _BLANKS:
+            self.at += 1
 
     @property
     def is_at_end(self) -> bool:

@@ -1,13 +1,8 @@
-"""Gmsh `.msh`: text 2.2 is read and written here, the rest is read through meshio.
-
-Differs from meshio's own writers: the text one is broken under NumPy 2, and `.msh` without a
-format name means ANSYS there.
-"""
+"""Gmsh `.msh` is written as text of version 2.2, which all programs read."""
 
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -16,25 +11,13 @@ import numpy as np
 from ..errors import FormatError
 from ..fields import Field
 from ..mesh import Mesh
-from . import gmsh_text, meshio_guard
 from .atomic import replaced
 from .export import exported, padded
+from .gmsh_data import comment
 from .raw import Array, RawMesh
 from .text_rows import printed
 
 _TYPE = {"line": 1, "triangle": 2, "tetra": 4, "vertex": 15}
-
-
-def read(path: Path) -> RawMesh:
-    """Read a mesh with its physical names."""
-    if gmsh_text.is_text_2(path):
-        return gmsh_text.read(path)
-    raw = meshio_guard.read(path, "gmsh")
-    # meshio keys the names by the name alone and so loses one that two dimensions share.
-    section = re.search(rb"\$PhysicalNames(.*?)\$EndPhysicalNames", path.read_bytes(), re.DOTALL)
-    if section:
-        raw.names = gmsh_text.physical_names(section[1].decode("utf-8", errors="replace"))
-    return raw
 
 
 def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
@@ -44,7 +27,7 @@ def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
             raise FormatError(f"cannot write {path}: a quote or line break in the name {name!r}")
     content = exported(mesh, {})
     labels = [name for name, field in fields.items() if field.kind == "label"]
-    parts = ["$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", gmsh_text.comment(labels), _names(mesh)]
+    parts = ["$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", comment(labels), _names(mesh)]
     numbers = np.arange(1, mesh.n_points + 1)
     parts += [f"$Nodes\n{mesh.n_points}\n", printed(numbers, content.points), "$EndNodes\n"]
     parts += _elements(content)

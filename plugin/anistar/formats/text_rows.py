@@ -6,7 +6,7 @@ import warnings
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from ..topology import Float
 
@@ -22,7 +22,7 @@ def printed(*columns: NDArray[Any]) -> str:
     return "\n".join([line % row for row in zip(*flat, strict=True)]) + "\n"
 
 
-def parsed(text: str) -> Float:
+def parsed(text: str, dtype: DTypeLike = np.float64) -> NDArray[Any]:
     """Return the numbers in a text.
 
     Raises
@@ -33,7 +33,9 @@ def parsed(text: str) -> Float:
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:
-            return np.fromstring(text, dtype=np.float64, sep=" ")
+            # fromstring makes a number of blanks alone
+            blank = not text or text.isspace()
+            return np.zeros(0, dtype) if blank else np.fromstring(text, dtype=dtype, sep=" ")
         except (DeprecationWarning, ValueError) as error:
             raise ValueError("holds something that is not a number") from error
 

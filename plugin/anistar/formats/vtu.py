@@ -1,4 +1,4 @@
-"""VTU, written here so that names travel along and nothing is lost; meshio reads it.
+"""VTU, written here so that names travel along and nothing is lost.
 
 Tags are the integer cell array `medit:ref` on cells, facets, ridges and corners alike. Names are
 JSON in the field data array `anistar:names`, as bytes, because readers other than VTK's own stop
@@ -18,19 +18,19 @@ import numpy as np
 
 from ..fields import Field
 from ..mesh import Mesh
-from . import meshio_guard
 from .atomic import replaced
 from .export import exported
-from .raw import KIND_DIM, Array, RawMesh
+from .raw import Array, RawMesh
+from .tag_arrays import NAMES, TAGS, refuse_reserved
+from .vtk_cells import types_and_rows
 
-_VTK_TYPE = {"vertex": 1, "line": 3, "triangle": 5, "tetra": 10}
 _VTK_DTYPE = {"float64": "Float64", "int64": "Int64", "int32": "Int32", "uint8": "UInt8"}
 
 
 def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
     """Write mesh, tags, names and fields."""
     content = exported(mesh, fields)
-    meshio_guard.refuse_reserved(content, path)
+    refuse_reserved(content, path)
     with replaced(path) as temporary:
         document = "".join(_document(content))
         temporary.write_text(document, encoding="ascii", errors="xmlcharrefreplace")
@@ -38,9 +38,7 @@ def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
 
 def _document(content: RawMesh) -> list[str]:
     blocks = content.blocks
-    sizes = np.concatenate([np.full(len(b.rows), KIND_DIM[b.kind] + 1, np.int64) for b in blocks])
-    types = np.concatenate([np.full(len(b.rows), _VTK_TYPE[b.kind], np.uint8) for b in blocks])
-    connectivity = np.concatenate([b.rows.ravel().astype(np.int64) for b in blocks])
+    types, ends, connectivity = types_and_rows(blocks)
     tags = np.concatenate([np.asarray(b.tags, dtype=np.int32) for b in blocks])
     cell_data = {name: np.concatenate([b.data[name] for b in blocks]) for name in blocks[0].data}
     entries = [[dim, tag, name] for (dim, tag), name in sorted(content.names.items())]
@@ -48,18 +46,18 @@ def _document(content: RawMesh) -> list[str]:
     return [
         '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" '
         'byte_order="LittleEndian" header_type="UInt64">\n<UnstructuredGrid>\n<FieldData>\n',
-        _array(meshio_guard.NAMES, encoded, tuples=True),
+        _array(NAMES, encoded, tuples=True),
         f'</FieldData>\n<Piece NumberOfPoints="{len(content.points)}" '
-        f'NumberOfCells="{len(sizes)}">\n<Points>\n',
+        f'NumberOfCells="{len(types)}">\n<Points>\n',
         _array("Points", content.points),
         "</Points>\n<Cells>\n",
         _array("connectivity", connectivity),
-        _array("offsets", np.cumsum(sizes)),
+        _array("offsets", ends),
         _array("types", types),
         "</Cells>\n<PointData>\n",
         *[_array(name, values) for name, values in content.point_data.items()],
         "</PointData>\n<CellData>\n",
-        _array(meshio_guard.TAGS, tags),
+        _array(TAGS, tags),
         *[_array(name, values) for name, values in cell_data.items()],
         "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
     ]

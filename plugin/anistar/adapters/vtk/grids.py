@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import meshio
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
@@ -22,26 +21,11 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 from ...fields import Field, as_fields
 from ...formats.assembly import assembled
 from ...formats.export import exported
-from ...formats.meshio_guard import NAMES, TAGS, content_of
-from ...formats.raw import KIND_DIM
+from ...formats.raw import RawMesh
+from ...formats.reading import reading
+from ...formats.tag_arrays import NAMES, TAGS, decoded_names, take_tags
+from ...formats.vtk_cells import blocks_of, types_and_rows
 from ...mesh import Mesh
-
-_KINDS = {
-    1: "vertex",
-    3: "line",
-    5: "triangle",
-    7: "polygon",
-    9: "quad",
-    10: "tetra",
-    12: "hexahedron",
-    13: "wedge",
-    14: "pyramid",
-    21: "line3",
-    22: "triangle6",
-    24: "tetra10",
-    42: "polyhedron",
-}
-_TYPES = {kind: number for number, kind in _KINDS.items()}
 
 
 def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) -> Any:
@@ -67,16 +51,13 @@ def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) ->
     points = vtkPoints()
     points.SetData(numpy_to_vtk(content.points))
     grid.SetPoints(points)
-    sizes = [np.full(len(b.rows), KIND_DIM[b.kind] + 1, np.int64) for b in content.blocks]
-    types = [np.full(len(b.rows), _TYPES[b.kind], np.uint8) for b in content.blocks]
+    types, ends, connectivity = types_and_rows(content.blocks)
     cells = vtkCellArray()
     cells.SetData(
-        numpy_to_vtkIdTypeArray(np.r_[0, np.cumsum(np.concatenate(sizes))], deep=True),
-        numpy_to_vtkIdTypeArray(
-            np.concatenate([b.rows.ravel().astype(np.int64) for b in content.blocks]), deep=True
-        ),
+        numpy_to_vtkIdTypeArray(np.r_[0, ends], deep=True),
+        numpy_to_vtkIdTypeArray(connectivity, deep=True),
     )
-    grid.SetCells(numpy_to_vtk(np.concatenate(types), deep=True), cells)
+    grid.SetCells(numpy_to_vtk(types, deep=True), cells)
     _add(grid.GetPointData(), content.point_data)
     blocks = content.blocks
     cell_data = {name: np.concatenate([b.data[name] for b in blocks]) for name in blocks[0].data}
@@ -115,37 +96,29 @@ def from_vtk(grid: Any) -> tuple[Mesh, dict[str, Field]]:
         kind = getattr(grid, "GetClassName", lambda: type(grid).__name__)()
         raise TypeError(f"a vtkUnstructuredGrid is needed, not {kind}")
     name = Path("vtkUnstructuredGrid")
-    raw = content_of(_as_meshio(grid), name)
-    raw.six = "vtk"
+    with reading(name):
+        raw = _content(grid)
+        take_tags(raw)
     mesh, fields, _ = assembled(raw, name)
     return mesh, fields
 
 
-def _as_meshio(grid: Any) -> meshio.Mesh:
+def _content(grid: Any) -> RawMesh:
     n = grid.GetNumberOfPoints()
     points = vtk_to_numpy(grid.GetPoints().GetData()) if n else np.zeros((0, 3))
-    cells: list[tuple[str, NDArray[Any]]] = []
-    members: list[NDArray[Any]] = []
+    raw = RawMesh(points.astype(np.float64, copy=False), [], six="vtk")
+    raw.point_data = _arrays(grid.GetPointData())
     if grid.GetNumberOfCells():
-        types = np.asarray(WrapDataObject(grid).CellTypes)
-        offsets = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
-        connectivity = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
-        for number in np.unique(types):
-            chosen = np.flatnonzero(types == number)
-            sizes = np.diff(offsets)[chosen]
-            kind = _KINDS.get(int(number), f"VTK {number}")
-            width = int(sizes[0]) if kind in KIND_DIM else 0
-            rows = connectivity[offsets[chosen][:, None] + np.arange(width)]
-            cells.append((kind, rows))
-            members.append(chosen)
-    cell_data = _arrays(grid.GetCellData())
-    return meshio.Mesh(
-        points,
-        cells,
-        point_data=_arrays(grid.GetPointData()),
-        cell_data={name: [a[chosen] for chosen in members] for name, a in cell_data.items()},
-        field_data=_arrays(grid.GetFieldData()),
-    )
+        raw.blocks = blocks_of(
+            np.asarray(WrapDataObject(grid).CellTypes),
+            vtk_to_numpy(grid.GetCells().GetOffsetsArray())[1:],
+            vtk_to_numpy(grid.GetCells().GetConnectivityArray()),
+            _arrays(grid.GetCellData()),
+        )
+    names = _arrays(grid.GetFieldData()).get(NAMES)
+    if names is not None:
+        raw.names = decoded_names(names.tolist())
+    return raw
 
 
 def _add(data: Any, arrays: Mapping[str, NDArray[Any]]) -> None:

@@ -1,0 +1,115 @@
+"""Values at nodes and in elements of a Gmsh file, and what our files note about them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+from .gmsh_elements import Elements
+from .gmsh_streams import Stream
+from .notes import labels_of, note_of
+from .numbering import Numbering
+from .raw import Array, RawMesh
+
+_LABELS = "anistar:labels "
+_LONGEST_LIST = 1000
+_STEP, _COMPONENTS, _ROWS = 0, 1, 2
+
+
+@dataclass
+class Data:
+    """One section of values."""
+
+    name: str
+    step: int
+    numbers: Array
+    values: Array
+
+
+def comment(labels: list[str]) -> str:
+    """Return a section that tells which data are labels; Gmsh itself stores doubles only."""
+    return f"$Comments\n{_LABELS}{json.dumps(labels)}\n$EndComments\n"
+
+
+def noted_labels(body: str) -> set[str] | None:
+    """Return what `comment` noted, None in a section that is not ours."""
+    for line in body.splitlines():
+        if line.startswith(_LABELS):
+            return labels_of(note_of(line.removeprefix(_LABELS)))
+    return None
+
+
+def read_data(stream: Stream) -> Data:
+    """Return name, time step, numbers and values of a section."""
+    strings = [stream.line() for _ in range(_count(stream.line()))]
+    for _ in range(_count(stream.line())):
+        stream.line()
+    integers = [_integer(stream.line()) for _ in range(_count(stream.line()))]
+    if not strings or len(integers) <= _ROWS:
+        raise ValueError("the head of a section of data is damaged")
+    name, components = strings[0].strip('"'), integers[_COMPONENTS]
+    if components < 1:
+        raise ValueError(f"the data {name!r} have {components} components")
+    numbers, values = stream.table(integers[_ROWS], components)
+    stream.finish()
+    values = values[:, 0] if components == 1 else values
+    return Data(name, integers[_STEP], numbers, values.copy())
+
+
+def _count(line: str) -> int:
+    count = _integer(line)
+    if not 0 <= count <= _LONGEST_LIST:
+        raise ValueError(f"the head of a section of data announces {count} lines")
+    return count
+
+
+def _integer(line: str) -> int:
+    longest = len(str(-(2**63)))
+    if not line.removeprefix("-").isdecimal() or len(line) > longest:
+        raise ValueError(f"the head of a section of data has {line[:40]!r} for an integer")
+    return int(line)
+
+
+def add_node_data(raw: RawMesh, nodes: Numbering, data: Data) -> None:
+    """Give values to the points; those that are left out get NaN."""
+    Numbering(f"node of {data.name!r}", data.numbers)
+    full = np.full((len(raw.points), *data.values.shape[1:]), np.nan)
+    full[nodes.rows(data.numbers)] = data.values
+    raw.point_data[data.name] = full
+
+
+def add_element_data(raw: RawMesh, runs: list[Elements], data: Data) -> None:
+    """Spread values over the blocks; elements that are left out get NaN."""
+    Numbering(f"element of {data.name!r}", data.numbers)
+    own, row_of = np.unique(np.concatenate([run.numbers for run in runs]), return_inverse=True)
+    full = np.full((len(own), *data.values.shape[1:]), np.nan)
+    full[Numbering("element", own).rows(data.numbers)] = data.values
+    starts = np.cumsum([0, *(len(run.numbers) for run in runs)])
+    for block, start in zip(raw.blocks, starts, strict=False):
+        block.data[data.name] = full[row_of.ravel()[start : start + len(block.rows)]]
+
+
+def last_steps(parts: list[Data], warnings: list[str]) -> list[Data]:
+    """Return one section for each name: that of the last step.
+
+    Raises
+    ------
+    ValueError
+        If a name is given twice for one step.
+    """
+    last: dict[str, Data] = {}
+    seen: set[tuple[str, int]] = set()
+    for part in parts:
+        if (part.name, part.step) in seen:
+            raise ValueError(f"the data {part.name!r} are given twice for step {part.step}")
+        seen.add((part.name, part.step))
+        if part.name not in last or part.step > last[part.name].step:
+            last[part.name] = part
+    warnings += [
+        f"{name!r} is given for several steps, the last one, {part.step}, is kept"
+        for name, part in last.items()
+        if sum(name == other for other, _ in seen) > 1
+    ]
+    return list(last.values())

@@ -1,0 +1,200 @@
+"""Abaqus input: nodes, elements and the sets that name them.
+
+The format has neither counts nor a mark at its end, so that a cut between two lines cannot be
+told; reading says so. Other files that it includes are not opened.
+
+References
+----------
+Abaqus keywords: *NODE, *ELEMENT, *ELSET; data lines follow a keyword line.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from .numbering import Numbering
+from .raw import KIND_DIM, Array, Block, RawMesh
+from .reading import reading
+from .text_rows import integers, parsed
+
+_KEYWORD = re.compile(r"^\*([^,\n]*)(.*)$", re.MULTILINE)
+_COMMENT = re.compile(r"^\*\*.*$", re.MULTILINE)
+_KINDS = {
+    "line": ("T2D2", "T2D2H", "T3D2", "T3D2H", "B21", "B21H", "B31", "B31H"),
+    "triangle": ("CPS3", "CPE3", "CAX3", "STRI3", "S3", "S3R", "S3RS", "R3D3"),
+    "tetra": ("C3D4", "C3D4H"),
+    "quad": ("CPS4", "CPS4R", "CPE4", "S4", "S4R", "CAX4P"),
+    "triangle6": ("CPS6", "CPE6", "STRI65"),
+    "hexahedron": ("C3D8", "C3D8H", "C3D8I", "C3D8R"),
+    "tetra10": ("C3D10", "C3D10H", "C3D10M"),
+    "wedge": ("C3D6",),
+}
+_KIND_OF = {name: kind for kind, names in _KINDS.items() for name in names}
+_NODES_OF_REFUSED = {"quad": 4, "triangle6": 6, "hexahedron": 8, "tetra10": 10, "wedge": 6}
+_GENERATED = 3
+"""First, last and step of a set that is generated."""
+
+
+@dataclass
+class _Content:
+    """What was read so far."""
+
+    nodes: list[Array] = field(default_factory=list)
+    kinds: list[str] = field(default_factory=list)
+    elements: list[Array] = field(default_factory=list)
+    of_elements: dict[str, list[Array]] = field(default_factory=dict)
+    sets: dict[str, list[Array]] = field(default_factory=dict)
+
+
+def read(path: Path) -> RawMesh:
+    """Read a mesh; the sets of elements become tags with names, the last one of a cell counts.
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged, includes another one, or has elements that are not known.
+    """
+    with reading(path):
+        return _mesh(path.read_text(encoding="utf-8", errors="replace"))
+
+
+def _mesh(text: str) -> RawMesh:
+    content = _Content()
+    clean = _COMMENT.sub("", text)
+    found = list(_KEYWORD.finditer(clean))
+    if not found or clean[: found[0].start()].strip():
+        raise ValueError("it does not begin with a keyword such as *HEADING")
+    ends = [match.start() for match in found[1:]] + [len(clean)]
+    for match, end in zip(found, ends, strict=True):
+        keyword = match[1].strip().upper()
+        _read(content, keyword, _parameters(match[2]), clean[match.end() : end])
+    if not content.nodes or not content.elements:
+        raise ValueError("it is truncated: it has no *NODE or no *ELEMENT")
+    return _raw(content)
+
+
+def _read(content: _Content, keyword: str, parameters: dict[str, str], body: str) -> None:
+    if keyword == "INCLUDE":
+        raise ValueError("it includes another file, which is not opened: put it in here")
+    if keyword == "NODE":
+        content.nodes.append(_nodes(body))
+    elif keyword == "ELEMENT":
+        kind = _KIND_OF.get(parameters.get("TYPE", "").upper())
+        if kind is None:
+            raise ValueError(f"elements of type {parameters.get('TYPE', '')[:40]!r} are not known")
+        width = KIND_DIM[kind] + 1 if kind in KIND_DIM else _NODES_OF_REFUSED[kind]
+        rows = _integers(keyword, body)
+        if len(rows) % (width + 1):
+            raise ValueError(f"*ELEMENT has {len(rows)} numbers, no rows of {width + 1}")
+        rows = rows.reshape(-1, width + 1)
+        content.kinds.append(kind)
+        content.elements.append(rows)
+        if "ELSET" in parameters:
+            content.of_elements.setdefault(parameters["ELSET"], []).append(rows[:, 0])
+    elif keyword == "ELSET":
+        name = parameters.get("ELSET", "")
+        members = _members(content, body, is_generated="GENERATE" in parameters)
+        content.sets.setdefault(name, []).append(members)
+
+
+def _parameters(text: str) -> dict[str, str]:
+    pairs = (word.partition("=") for word in text.split(","))
+    return {name.strip().upper(): value.strip() for name, _, value in pairs if name.strip()}
+
+
+def _nodes(body: str) -> Array:
+    first = body.strip().partition("\n")[0]
+    width = len(first.strip().rstrip(",").split(","))
+    if width not in (3, 4):
+        raise ValueError(f"*NODE has {width} numbers in a line, not a number and coordinates")
+    numbers = _numbers("NODE", body)
+    if len(numbers) % width:
+        raise ValueError(f"*NODE has {len(numbers)} numbers, no rows of {width}")
+    return numbers.reshape(-1, width)
+
+
+def _members(content: _Content, body: str, *, is_generated: bool) -> Array:
+    """Return the numbers of the elements in a set, which may be made of other sets."""
+    words = [word.strip() for word in body.replace("\n", ",").split(",") if word.strip()]
+    if words and not words[0].isdecimal():
+        known = {**content.of_elements, **content.sets}
+        for word in words:
+            if word not in known:
+                raise ValueError(f"a set is made of {word[:40]!r}, which is not given")
+        return np.concatenate([part for word in words for part in known[word]])
+    members = _integers("ELSET", body)
+    if not is_generated:
+        return members
+    if len(members) % _GENERATED:
+        raise ValueError(f"*ELSET, GENERATE has {len(members)} numbers, no rows of {_GENERATED}")
+    n_elements = sum(len(rows) for rows in content.elements)
+    parts = [np.zeros(0, np.int64)]
+    for first, last, step in members.reshape(-1, _GENERATED).tolist():
+        if step < 1 or last < first or (last - first) // step >= n_elements:
+            raise ValueError(f"*ELSET generates {first} to {last}, more than there are elements")
+        parts.append(np.arange(first, last + 1, step))
+    return np.concatenate(parts)
+
+
+def _numbers(keyword: str, body: str) -> Array:
+    try:
+        return parsed(body.replace(",", " "))
+    except ValueError as error:
+        raise ValueError(f"*{keyword} {error}") from error
+
+
+def _integers(keyword: str, body: str) -> Array:
+    try:
+        return integers(_numbers(keyword, body))
+    except ValueError as error:
+        raise ValueError(f"*{keyword} {error}") from error
+
+
+def _raw(content: _Content) -> RawMesh:
+    if len({rows.shape[1] for rows in content.nodes}) > 1:
+        raise ValueError("some of its nodes have two coordinates, others three")
+    nodes = np.concatenate(content.nodes)
+    number = Numbering("node", nodes[:, 0])
+    raw = RawMesh(np.ascontiguousarray(nodes[:, 1:]), [])
+    tags = _tags(content, raw)
+    starts = np.cumsum([0, *(len(rows) for rows in content.elements)])
+    raw.blocks = [
+        Block(kind, number.rows(rows[:, 1:]), tags[start : start + len(rows)])
+        for kind, rows, start in zip(content.kinds, content.elements, starts, strict=False)
+    ]
+    raw.warnings.append(
+        "Abaqus input has neither counts nor an end, so a file that was cut cannot be told: "
+        f"{len(raw.points)} points and {len(tags)} elements were read"
+    )
+    return raw
+
+
+def _tags(content: _Content, raw: RawMesh) -> Array:
+    """Return the number of the last set that each element is in, and give the names to `raw`."""
+    number = Numbering("element", np.concatenate([rows[:, 0] for rows in content.elements]))
+    dims = np.concatenate(
+        [
+            np.full(len(rows), KIND_DIM.get(kind, -1))
+            for kind, rows in zip(content.kinds, content.elements, strict=True)
+        ]
+    )
+    # sets of their own come last: they say more than the groups in which elements were written
+    sets = [
+        (name, np.concatenate(parts))
+        for named in (content.of_elements, content.sets)
+        for name, parts in named.items()
+    ]
+    tags = np.zeros(len(number), np.int64)
+    n_lost = 0
+    for tag, (name, members) in enumerate(sets, start=1):
+        chosen = number.rows(members)
+        n_lost += int(np.count_nonzero(tags[chosen]))
+        tags[chosen] = tag
+        raw.names |= {(int(dim), tag): name for dim in np.unique(dims[chosen]) if dim >= 0}
+    if n_lost:
+        raw.warnings.append(f"{n_lost} element(s) are in several sets, the last one is kept")
+    return tags

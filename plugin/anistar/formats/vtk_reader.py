@@ -1,0 +1,204 @@
+"""Legacy VTK files with an unstructured grid, as text or binary, of versions 1 to 5.
+
+The format has no mark at its end. In the files that we write the tags come last, and a title says
+so; of others nobody can tell whether they are whole, which is a warning.
+
+References
+----------
+VTK User's Guide, "VTK File Formats", "Simple Legacy Formats"; version 5 has offsets and
+connectivity in the place of rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from .cursor import Cursor
+from .raw import Array, RawMesh
+from .reading import reading
+from .tag_arrays import TAGS, take_tags
+from .vtk_cells import blocks_of, ends_of_rows
+from .vtk_numbers import LegacyNumbers
+
+OWN_TITLE = f"written by anistar through meshio, {TAGS} comes last"
+_FIXED_WIDTHS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TENSORS6": 6}
+_LARGEST_VERSION = 5
+
+
+def read(path: Path) -> RawMesh:
+    """Read a mesh with its tags and fields.
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged or holds another kind of data.
+    """
+    with reading(path):
+        raw = _mesh(path.read_bytes())
+        take_tags(raw)
+    return raw
+
+
+@dataclass
+class _Grid:
+    """What was read so far; `data` is by the name of the section."""
+
+    points: Array | None = None
+    rows: Array | None = None
+    ends: Array | None = None
+    types: Array | None = None
+    data: dict[str, dict[str, Array]] = field(default_factory=dict)
+
+    def length(self, section: str) -> int:
+        """Return how many rows the arrays of a section have."""
+        entities = self.points if section == "POINT_DATA" else self.types
+        return 0 if entities is None else len(entities)
+
+
+def _mesh(data: bytes) -> RawMesh:
+    cursor = Cursor(data, ">")
+    version, title, encoding, dataset = (cursor.line() for _ in range(4))
+    _check_head(version, encoding, dataset)
+    numbers = LegacyNumbers(cursor, is_text=encoding.upper() == "ASCII")
+    grid, current = _Grid(), ""
+    while words := numbers.next_words():
+        section = words[0].upper()
+        if section in ("POINT_DATA", "CELL_DATA"):
+            current = section
+            _open(grid, section, words)
+        elif section in ("POINTS", "CELLS", "CELL_TYPES"):
+            _read_geometry(grid, section, words, numbers)
+        else:
+            _read_arrays(grid.data.get(current), grid.length(current), words, numbers)
+    return _raw(grid, title)
+
+
+def _check_head(version: str, encoding: str, dataset: str) -> None:
+    words = version.split()
+    if words[:4] != ["#", "vtk", "DataFile", "Version"] or len(words) != 5:
+        raise ValueError("it does not begin as a legacy VTK file")
+    if not "1" <= words[4][:1] <= str(_LARGEST_VERSION):
+        raise ValueError(f"version {words[4][:20]} is not known, only 1 to {_LARGEST_VERSION}")
+    if encoding.upper() not in ("ASCII", "BINARY"):
+        raise ValueError(f"it is neither ASCII nor BINARY but {encoding[:40]!r}")
+    if dataset.upper().split() != ["DATASET", "UNSTRUCTURED_GRID"]:
+        raise ValueError(f"it holds {dataset[:40]!r}: save it as an unstructured grid")
+
+
+def _open(grid: _Grid, section: str, words: list[str]) -> None:
+    if section in grid.data:
+        raise ValueError(f"it has two sections {section}: only one can be meant")
+    n = _count(words, 1)
+    if n != grid.length(section):
+        raise ValueError(f"{section} is for {n} values, there are {grid.length(section)}")
+    grid.data[section] = {}
+
+
+def _read_geometry(grid: _Grid, section: str, words: list[str], numbers: LegacyNumbers) -> None:
+    name = {"POINTS": "points", "CELLS": "rows", "CELL_TYPES": "types"}[section]
+    if getattr(grid, name) is not None:
+        raise ValueError(f"it has two sections {section}: only one can be meant")
+    n = _count(words, 1)
+    if section == "POINTS":
+        grid.points = numbers.read(words[2], 3 * n).reshape(n, 3)
+    elif section == "CELL_TYPES":
+        grid.types = numbers.read("int", n)
+    elif numbers.peek().upper().startswith("OFFSETS"):
+        ends = numbers.read(_type_in(numbers.next_words(), "OFFSETS"), n)
+        if n == 0 or ends[0] != 0:
+            raise ValueError("the offsets of its cells do not begin with 0")
+        kind = _type_in(numbers.next_words(), "CONNECTIVITY")
+        grid.ends, grid.rows = ends[1:], numbers.read(kind, _count(words, 2))
+    else:
+        grid.rows = numbers.read("int", _count(words, 2))
+
+
+def _read_arrays(
+    data: dict[str, Array] | None, n_rows: int, words: list[str], numbers: LegacyNumbers
+) -> None:
+    """Read what begins with `words`: one array, or a field of several.
+
+    A field before the data of points and cells is about the whole file, and not kept.
+    """
+    section = words[0].upper()
+    if section == "METADATA":
+        numbers.skip_metadata()
+    elif section == "FIELD":
+        for _ in range(_count(words, 2)):
+            name, width, n, kind = _head_in_field(numbers)
+            values = numbers.read(kind, width * n)
+            if data is not None:
+                if n != n_rows:
+                    raise ValueError(f"field {name!r} has {n} values, not {n_rows}")
+                _keep(data, name, values.reshape(n, width))
+    elif data is None:
+        raise ValueError(f"the section {section[:40]!r} is not known")
+    elif section == "SCALARS":
+        width = _count(words, 3) if len(words) > 3 else 1
+        if numbers.peek().upper().startswith("LOOKUP_TABLE"):
+            numbers.next_words()
+        _keep(data, words[1], numbers.read(words[2], width * n_rows).reshape(n_rows, width))
+    elif section == "LOOKUP_TABLE":
+        numbers.read("float" if numbers.is_text else "unsigned_char", 4 * _count(words, 2))
+    elif section in _FIXED_WIDTHS:
+        width = _FIXED_WIDTHS[section]
+        _keep(data, words[1], numbers.read(words[2], width * n_rows).reshape(n_rows, width))
+    else:
+        raise ValueError(f"the section {section[:40]!r} is not known")
+
+
+def _head_in_field(numbers: LegacyNumbers) -> tuple[str, int, int, str]:
+    words = numbers.next_words()
+    while words[:1] == ["METADATA"]:
+        numbers.skip_metadata()
+        words = numbers.next_words()
+    if len(words) != 4:
+        raise ValueError("it is truncated: a field has fewer arrays than announced")
+    return words[0], _count(words, 1), _count(words, 2), words[3]
+
+
+def _keep(data: dict[str, Array], name: str, values: Array) -> None:
+    if name in data:
+        raise ValueError(f"it has two arrays {name!r}: only one can be meant")
+    if values.shape[1] == 0:
+        raise ValueError(f"the array {name!r} has no components")
+    data[name] = values[:, 0] if values.shape[1] == 1 else values
+
+
+def _type_in(words: list[str], section: str) -> str:
+    if len(words) != 2 or words[0].upper() != section:
+        raise ValueError(f"{section} with a type is missing behind CELLS")
+    return words[1]
+
+
+def _count(words: list[str], at: int) -> int:
+    longest = len(str(2**63))
+    if at >= len(words) or not words[at].isdecimal() or len(words[at]) > longest:
+        raise ValueError(f"{' '.join(words)[:60]!r} has no count")
+    return int(words[at])
+
+
+def _raw(grid: _Grid, title: str) -> RawMesh:
+    for name in ("points", "rows", "types"):
+        if getattr(grid, name) is None:
+            raise ValueError(f"it is truncated: its {name} are missing")
+    on_cells = grid.data.get("CELL_DATA", {})
+    rows, ends = np.asarray(grid.rows), grid.ends
+    if ends is None:
+        rows, ends = ends_of_rows(np.asarray(grid.types), rows)
+    blocks = blocks_of(np.asarray(grid.types), ends, rows, on_cells)
+    raw = RawMesh(np.asarray(grid.points, np.float64), blocks)
+    raw.point_data = grid.data.get("POINT_DATA", {})
+    raw.six = "vtk"
+    if title == OWN_TITLE:
+        if TAGS not in on_cells:
+            raise ValueError(f"it is truncated: the array {TAGS} is missing")
+    else:
+        raw.warnings.append(
+            "legacy VTK has no mark at its end, so a file that was cut cannot be told: "
+            f"{len(raw.points)} points and {len(ends)} cells were read"
+        )
+    return raw

@@ -1,0 +1,146 @@
+"""VTU of any writer: unstructured grids in one or more pieces."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from .raw import Array, Block, RawMesh
+from .reading import reading
+from .tag_arrays import NAMES, decoded_names, take_tags
+from .vtk_cells import blocks_of
+from .vtu_arrays import Encoding, numbers_of
+from .xml_tree import attribute, count, root_of
+
+_APPENDED = re.compile(rb"<AppendedData\b([^<>]*)>\s*_")
+_NOT_NUMBERS = ("String", "Bit")
+
+
+def read(path: Path) -> RawMesh:
+    """Read a mesh with its tags, names and fields.
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged or holds another kind of data.
+    """
+    with reading(path):
+        raw = _mesh(path.read_bytes())
+        take_tags(raw)
+    return raw
+
+
+def _mesh(data: bytes) -> RawMesh:
+    document, appended, is_raw = _parted(data)
+    root = root_of(document)
+    if root.tag != "VTKFile" or root.get("type") != "UnstructuredGrid":
+        raise ValueError(f"it holds {root.get('type')!r}: save it as an unstructured grid")
+    encoding = Encoding.of(root, appended, raw=is_raw, n_bytes=len(data))
+    grid = _only_child(root, "UnstructuredGrid")
+    pieces = grid.findall("Piece")
+    if not pieces:
+        raise ValueError("it has no Piece")
+    _check_tags(grid, {"Piece", "FieldData"})
+    warnings: list[str] = []
+    raw = _joined([_piece(piece, encoding, warnings) for piece in pieces])
+    raw.six = "vtk"
+    raw.warnings = warnings
+    for array in grid.iterfind("FieldData/DataArray"):
+        if array.get("Name") == NAMES:
+            if raw.names:
+                raise ValueError(f"it has two arrays {NAMES}")
+            raw.names = decoded_names(numbers_of(array, encoding).tolist())
+    return raw
+
+
+def _parted(data: bytes) -> tuple[bytes, bytes, bool]:
+    """Return the document without its appended data, those, and whether they are raw."""
+    found = _APPENDED.search(data)
+    if found is None:
+        return data, b"", False
+    end = data.rfind(b"</AppendedData>")
+    if end < found.end():
+        raise ValueError("it is truncated: its appended data do not end")
+    is_raw = b'"raw"' in found[1] or b"'raw'" in found[1]
+    appended = data[found.end() : end]
+    rest = data[end + len(b"</AppendedData>") :]
+    return data[: found.start()] + rest, appended if is_raw else appended.rstrip(), is_raw
+
+
+def _only_child(parent: Element, tag: str) -> Element:
+    children = parent.findall(tag)
+    if len(children) != 1:
+        raise ValueError(f"it has {len(children)} elements {tag} where there is one")
+    return children[0]
+
+
+def _check_tags(parent: Element, known: set[str]) -> None:
+    for child in parent:
+        if child.tag not in known:
+            raise ValueError(f"the element {child.tag} in {parent.tag} is not known")
+
+
+def _piece(piece: Element, encoding: Encoding, warnings: list[str]) -> RawMesh:
+    _check_tags(piece, {"Points", "Cells", "PointData", "CellData"})
+    n_points, n_cells = count(piece, "NumberOfPoints"), count(piece, "NumberOfCells")
+    points = numbers_of(_only_child(_only_child(piece, "Points"), "DataArray"), encoding)
+    if points.shape != (n_points, 3):
+        raise ValueError(f"it announces {n_points} points, {points.shape} numbers follow")
+    cells = _arrays(_only_child(piece, "Cells"), encoding, warnings)
+    missing = {"types", "offsets", "connectivity"} - cells.keys()
+    if missing:
+        raise ValueError(f"its cells have no array {sorted(missing)[0]!r}")
+    if len(cells["types"]) != n_cells:
+        raise ValueError(f"it announces {n_cells} cells, {len(cells['types'])} types follow")
+    on_points, on_cells = (
+        _data(piece, tag, length, encoding, warnings)
+        for tag, length in (("PointData", n_points), ("CellData", n_cells))
+    )
+    blocks = blocks_of(
+        cells["types"], cells["offsets"], cells["connectivity"].astype(np.int64), on_cells
+    )
+    return RawMesh(points.astype(np.float64), blocks, point_data=on_points)
+
+
+def _data(
+    piece: Element, tag: str, length: int, encoding: Encoding, warnings: list[str]
+) -> dict[str, Array]:
+    if piece.find(tag) is None:
+        return {}
+    arrays = _arrays(_only_child(piece, tag), encoding, warnings)
+    for name, values in arrays.items():
+        if len(values) != length:
+            raise ValueError(f"{tag} {name!r} has {len(values)} values, not {length}")
+    return arrays
+
+
+def _arrays(parent: Element, encoding: Encoding, warnings: list[str]) -> dict[str, Array]:
+    arrays: dict[str, Array] = {}
+    for element in parent:
+        name = attribute(element, "Name")
+        if name in arrays:
+            raise ValueError(f"{parent.tag} has two arrays {name!r}")
+        if element.get("type") in _NOT_NUMBERS:
+            warnings.append(f"the array {name!r} in {parent.tag} holds no numbers and is not read")
+        else:
+            arrays[name] = numbers_of(element, encoding)
+    return arrays
+
+
+def _joined(pieces: list[RawMesh]) -> RawMesh:
+    """Return the pieces as one mesh, with the arrays that all of them have."""
+    filled = [piece for piece in pieces if len(piece.points)]
+    if len(filled) <= 1:
+        return (filled or pieces)[0]
+    starts = np.cumsum([0, *(len(piece.points) for piece in filled)])
+    blocks = [
+        Block(block.kind, block.rows + start, None, block.data)
+        for piece, start in zip(filled, starts, strict=False)
+        for block in piece.blocks
+    ]
+    names = [name for name in filled[0].point_data if all(name in p.point_data for p in filled)]
+    data = {name: np.concatenate([piece.point_data[name] for piece in filled]) for name in names}
+    return RawMesh(np.concatenate([piece.points for piece in filled]), blocks, point_data=data)

@@ -1,0 +1,179 @@
+"""XDMF with the numbers inside: one grid of triangles, tetrahedra, or a mixture.
+
+Numbers in other files (HDF5, raw binary) are not followed: a file read here opens no other.
+
+References
+----------
+XDMF, "XDMF Model and Format", versions 2 and 3.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from .raw import Array, Block, RawMesh
+from .reading import reading
+from .rows import leading_rows
+from .tag_arrays import take_tags
+from .text_rows import parsed
+from .xml_tree import attribute, root_of
+
+# XDMF's number of a type in a mixture -> (kind, columns before the points, columns in all); a
+# polyline has its number of points behind the type.
+_MIXED = {
+    1: ("vertex", 2, 3),
+    2: ("line", 2, 4),
+    4: ("triangle", 1, 4),
+    5: ("quad", 1, 5),
+    6: ("tetra", 1, 5),
+    7: ("pyramid", 1, 6),
+    8: ("wedge", 1, 7),
+    9: ("hexahedron", 1, 9),
+    34: ("line3", 1, 4),
+    36: ("triangle6", 1, 7),
+    38: ("tetra10", 1, 11),
+}
+_UNIFORM = {
+    "triangle": ("triangle", 3),
+    "tetrahedron": ("tetra", 4),
+    "quadrilateral": ("quad", 4),
+    "hexahedron": ("hexahedron", 8),
+    "wedge": ("wedge", 6),
+    "pyramid": ("pyramid", 5),
+    "edge_3": ("line3", 3),
+    "triangle_6": ("triangle6", 6),
+    "tetrahedron_10": ("tetra10", 10),
+}
+_DIMENSIONS = {"XY": 2, "XYZ": 3}
+_IGNORED = ("Time", "Information")
+_WITH_COUNT = (1, 2)
+
+
+def read(path: Path) -> RawMesh:
+    """Read a mesh with its tags and fields.
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged, holds another kind of grid, or has its numbers elsewhere.
+    """
+    with reading(path):
+        raw = _mesh(path.read_bytes())
+        take_tags(raw)
+    return raw
+
+
+def _mesh(data: bytes) -> RawMesh:
+    root = root_of(data)
+    grids = root.findall("Domain/Grid")
+    if root.tag != "Xdmf" or len(grids) != 1:
+        raise ValueError(f"it has {len(grids)} grids: one mesh is read, without a time series")
+    grid = grids[0]
+    if grid.get("GridType", "Uniform") != "Uniform":
+        raise ValueError(f"its grid is {grid.get('GridType')!r}: one mesh is read, no collection")
+    for child in grid:
+        if child.tag not in ("Topology", "Geometry", "Attribute", *_IGNORED):
+            raise ValueError(f"the element {child.tag} in Grid is not known")
+    points = _points(_only(grid, "Geometry"))
+    kinds, rows = _cells(_only(grid, "Topology"))
+    n_cells = sum(len(part) for part in rows)
+    on_points, on_cells = (
+        _data(grid, center, length) for center, length in (("Node", len(points)), ("Cell", n_cells))
+    )
+    starts = np.cumsum([0, *(len(part) for part in rows)])
+    blocks = [
+        Block(kind, part, None, {n: v[start : start + len(part)] for n, v in on_cells.items()})
+        for kind, part, start in zip(kinds, rows, starts, strict=False)
+    ]
+    return RawMesh(points, blocks, point_data=on_points, six="xdmf")
+
+
+def _only(grid: Element, tag: str) -> Element:
+    children = grid.findall(tag)
+    if len(children) != 1:
+        raise ValueError(f"it has {len(children)} elements {tag} where there is one")
+    return children[0]
+
+
+def _points(geometry: Element) -> Array:
+    kind = geometry.get("GeometryType", geometry.get("Type", "XYZ"))
+    if kind not in _DIMENSIONS:
+        raise ValueError(f"the geometry {kind!r} is not known, only XY and XYZ")
+    values = _numbers(_only(geometry, "DataItem")).astype(np.float64)
+    if values.ndim != 2 or values.shape[1] != _DIMENSIONS[kind]:
+        raise ValueError(f"its points have the shape {values.shape}, which is not {kind}")
+    return values
+
+
+def _cells(topology: Element) -> tuple[list[str], list[Array]]:
+    """Return runs of cells of one kind, and their points."""
+    kind = topology.get("TopologyType", topology.get("Type", "")).lower()
+    values = _numbers(_only(topology, "DataItem"))
+    if values.dtype.kind not in "iu":
+        raise ValueError("its topology is not of integers")
+    if kind == "mixed":
+        return _mixed(values.ravel())
+    if kind not in _UNIFORM:
+        raise ValueError(f"the topology {kind[:40]!r} is not known")
+    name, width = _UNIFORM[kind]
+    if values.ndim != 2 or values.shape[1] != width:
+        raise ValueError(f"its cells have the shape {values.shape}, {kind} has {width} points")
+    return [name], [values]
+
+
+def _mixed(values: Array) -> tuple[list[str], list[Array]]:
+    kinds, rows, at = [], [], 0
+    while at < len(values):
+        number = int(values[at])
+        if number not in _MIXED:
+            raise ValueError(f"cells of type {number} are not known")
+        kind, before, width = _MIXED[number]
+        alike = [0, 1] if number in _WITH_COUNT else [0]
+        run = leading_rows(values, at, width, alike)
+        if number in _WITH_COUNT and int(run[0, 1]) != width - before:
+            raise ValueError(f"a {kind} of {run[0, 1]} points is not supported")
+        kinds.append(kind)
+        rows.append(run[:, before:])
+        at += run.size
+    return kinds, rows
+
+
+def _data(grid: Element, center: str, length: int) -> dict[str, Array]:
+    arrays: dict[str, Array] = {}
+    for element in grid.iterfind("Attribute"):
+        if element.get("Center", "Node") not in ("Node", "Cell"):
+            raise ValueError(f"an attribute lives on {element.get('Center')!r}, not Node or Cell")
+        if element.get("Center", "Node") != center:
+            continue
+        name = attribute(element, "Name")
+        values = _numbers(_only(element, "DataItem"))
+        if name in arrays or values.ndim == 0 or len(values) != length:
+            raise ValueError(
+                f"the attribute {name!r} comes twice, or has {values.shape} values for {length}"
+            )
+        arrays[name] = values
+    return arrays
+
+
+def _numbers(item: Element) -> Array:
+    form = item.get("Format", "XML")
+    if form != "XML" or item.get("Reference") is not None or len(item):
+        raise ValueError(
+            f"its numbers are elsewhere ({form}): write them into the XDMF file, or write VTU"
+        )
+    shape = [int(n) for n in attribute(item, "Dimensions").split() if n.isdecimal()]
+    kind = item.get("NumberType", item.get("DataType", "Float"))
+    if kind not in ("Float", "Int", "UInt", "Char", "UChar"):
+        raise ValueError(f"numbers of type {kind!r} are not known")
+    is_single = item.get("Precision", "4") == "4"
+    dtype = np.float32 if is_single else np.float64
+    values = parsed(item.text or "", dtype if kind == "Float" else np.int64)
+    size = 1
+    for n in shape:
+        size *= n
+    if size != len(values):
+        raise ValueError(f"an item announces {shape} numbers, {len(values)} follow")
+    return values.reshape(shape)

@@ -1,0 +1,39 @@
+"""XML of files that anyone may have written."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+
+def root_of(document: bytes) -> ElementTree.Element:
+    """Return the root of a document without definitions of its own.
+
+    Raises
+    ------
+    ValueError
+        If it is no XML, is truncated, or defines entities, which could grow without bound or name
+        other files.
+    """
+    if b"<!DOCTYPE" in document or b"<!ENTITY" in document:
+        raise ValueError("it defines entities, which no mesh needs")
+    try:
+        return ElementTree.fromstring(document)
+    except ElementTree.ParseError as error:
+        raise ValueError(f"it is truncated or no XML: {error}") from error
+
+
+def attribute(element: ElementTree.Element, name: str) -> str:
+    """Return an attribute that must be there."""
+    value = element.get(name)
+    if value is None:
+        raise ValueError(f"an element {element.tag} has no attribute {name}")
+    return value
+
+
+def count(element: ElementTree.Element, name: str, default: int | None = None) -> int:
+    """Return an attribute that is a number of things."""
+    text = element.get(name, None if default is None else str(default))
+    longest = len(str(2**63))
+    if text is None or not text.strip().isdecimal() or len(text) > longest:
+        raise ValueError(f"the attribute {name} of {element.tag} is {text!r}, no count")
+    return int(text)
