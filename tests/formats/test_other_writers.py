@@ -1,0 +1,165 @@
+"""Files as other programs write them are read to the last bit that they hold."""
+
+import numpy as np
+import pytest
+from foreign_files import GMSH, MESHIO, gmsh_4, sample, write_with_meshio
+from meshes import square, two_region_cube, two_regions
+
+from anistar import Field, Mesh, formats
+from anistar.validation import validate
+
+MAKERS = [two_regions, two_region_cube]
+
+
+def order_of_cells(mesh):
+    """The order of the cells where each tag has a block of its own."""
+    return np.argsort(mesh.cell_tags, kind="stable")
+
+
+def assert_same(path, mesh, order, *, digits=15):
+    got, fields, report = formats.read_with_report(path)
+    rounding = 10.0**-digits
+    on_points, on_cells = sample(mesh)
+    assert validate(got) == []
+    assert np.allclose(got.points, mesh.points, rtol=rounding, atol=rounding)
+    assert np.array_equal(got.cells, mesh.cells[order])
+    assert np.array_equal(got.cell_tags, mesh.cell_tags[order])
+    assert sorted(map(tuple, got.facets.tolist())) == sorted(map(tuple, mesh.facets.tolist()))
+    assert np.array_equal(np.sort(got.facet_tags), np.sort(mesh.facet_tags))
+    assert np.allclose(fields["u"].values, on_points["u"], rtol=rounding, atol=rounding)
+    assert np.allclose(fields["v"].values, on_points["v"], rtol=rounding, atol=rounding)
+    assert np.allclose(fields["k"].values, on_cells["k"][order], rtol=rounding, atol=rounding)
+    return report
+
+
+@pytest.mark.parametrize("make", MAKERS)
+@pytest.mark.parametrize("kind", GMSH)
+def test_gmsh_4_in_text_and_binary(tmp_path, make, kind):
+    mesh = make()
+    path = tmp_path / "m.msh"
+    path.write_bytes(gmsh_4(mesh, kind))
+    report = assert_same(path, mesh, order_of_cells(mesh))
+    assert report.warnings == ()
+    assert formats.read(path)[0].names == mesh.names
+
+
+@pytest.mark.parametrize("make", MAKERS)
+@pytest.mark.parametrize("kind", MESHIO)
+def test_what_meshio_writes(tmp_path, make, kind):
+    mesh = make()
+    path = tmp_path / f"m{MESHIO[kind][0]}"
+    write_with_meshio(path, mesh, kind)
+    # its text has twelve digits in VTU
+    report = assert_same(path, mesh, np.arange(mesh.n_cells), digits=11 if "text" in kind else 15)
+    is_told = ["no mark at its end" in warning for warning in report.warnings]
+    assert is_told == ([True] if path.suffix == ".vtk" else [])
+
+
+@pytest.mark.parametrize("mode", ["Ascii", "Binary", "Appended", "AppendedRaw"])
+@pytest.mark.parametrize("compressor", ["None", "ZLib", "LZMA"])
+@pytest.mark.parametrize("make", MAKERS)
+def test_what_vtk_writes_in_xml(tmp_path, make, mode, compressor):
+    io = pytest.importorskip("vtkmodules.vtkIOXML")
+    from anistar.adapters.vtk import to_vtk
+
+    mesh = make()
+    on_points, on_cells = sample(mesh)
+    fields = {**on_points, "k": Field(on_cells["k"], "cells")}
+    writer = io.vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(to_vtk(mesh, fields))
+    writer.SetFileName(str(tmp_path / "m.vtu"))
+    getattr(writer, f"SetDataModeTo{mode.removesuffix('Raw')}")()
+    writer.SetEncodeAppendedData(not mode.endswith("Raw"))
+    getattr(writer, f"SetCompressorTypeTo{compressor}")()
+    writer.SetHeaderTypeToUInt32()
+    writer.Write()
+    got, back, report = formats.read_with_report(tmp_path / "m.vtu")
+    assert np.array_equal(got.points, mesh.points)
+    assert validate(got, mesh) == []
+    assert np.array_equal(back["v"].values, on_points["v"])
+    assert np.array_equal(back["k"].values, on_cells["k"])
+    assert report.warnings == ()
+
+
+@pytest.mark.parametrize("is_text", [True, False])
+@pytest.mark.parametrize("version", [42, 51])
+def test_what_vtk_writes_in_its_legacy_format(tmp_path, version, is_text):
+    io = pytest.importorskip("vtkmodules.vtkIOLegacy")
+    from anistar.adapters.vtk import to_vtk
+
+    mesh = two_region_cube()
+    on_points, _ = sample(mesh)
+    writer = io.vtkUnstructuredGridWriter()
+    writer.SetInputData(to_vtk(mesh, on_points))
+    writer.SetFileName(str(tmp_path / "m.vtk"))
+    writer.SetFileVersion(version)
+    writer.SetFileTypeToASCII() if is_text else writer.SetFileTypeToBinary()
+    writer.Write()
+    got, back = formats.read(tmp_path / "m.vtk")
+    assert {violation.kind for violation in validate(got, mesh)} <= {"names"}
+    assert np.allclose(got.points, mesh.points)
+    assert np.allclose(back["v"].values, on_points["v"])
+
+
+def test_pieces_are_put_together(tmp_path):
+    mesh = square(2)
+    path = tmp_path / "m.vtu"
+    formats.write(path, mesh, {"u": mesh.points[:, 0]})
+    text = path.read_text()
+    start, end = text.index("<Piece"), text.index("</UnstructuredGrid>")
+    formats.write(path, Mesh(points=mesh.points + 2, cells=mesh.cells), {"u": mesh.points[:, 1]})
+    other = path.read_text()
+    piece = other[other.index("<Piece") : other.index("</UnstructuredGrid>")]
+    path.write_text(text[:end] + piece + text[end:])
+    got, fields = formats.read(path)
+    assert text[start:end] != piece
+    assert got.n_points == 2 * mesh.n_points
+    assert np.array_equal(got.cells[mesh.n_cells :], mesh.cells + mesh.n_points)
+    assert fields["u"].values.tolist() == [*mesh.points[:, 0], *mesh.points[:, 1]]
+    assert validate(got) == []
+
+
+@pytest.mark.parametrize("make", MAKERS)
+def test_su2_keeps_what_it_can_hold(tmp_path, make):
+    mesh = make()
+    formats.write(tmp_path / "m.su2", mesh)
+    got, _, report = formats.read_with_report(tmp_path / "m.su2")
+    tags = np.unique(mesh.facet_tags)
+    names = {mesh.names.get((mesh.dim - 1, tag), str(tag)) for tag in tags.tolist()}
+    assert np.array_equal(got.cells, mesh.cells)
+    assert np.array_equal(got.points, mesh.points)
+    assert {got.names.get((mesh.dim - 1, t), str(t)) for t in got.facet_tags.tolist()} == names
+    assert report.warnings == ()
+    assert validate(got) == []
+
+
+ABAQUS = """*HEADING
+** a comment
+*NODE
+10, 0, 0
+20, 1, 0
+30, 1, 1
+40, 0, 1
+*ELEMENT, TYPE=CPS3, ELSET=all
+1, 10, 20, 30
+2, 10, 30,
+40
+*ELEMENT, TYPE=T2D2
+7, 10, 20
+*ELSET, ELSET=upper
+2
+*ELSET, ELSET=wall, GENERATE
+7, 7, 1
+"""
+
+
+def test_sets_of_abaqus_are_tags_and_the_last_one_counts(tmp_path):
+    (tmp_path / "m.inp").write_text(ABAQUS)
+    mesh, _, report = formats.read_with_report(tmp_path / "m.inp")
+    assert mesh.cells.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert mesh.cell_tags.tolist() == [1, 2]
+    assert mesh.facet_tags[0] == 3
+    assert mesh.names == {(2, 1): "all", (2, 2): "upper", (1, 3): "wall"}
+    assert report.warnings[0] == "1 element(s) are in several sets, the last one is kept"
+    assert "a file that was cut cannot be told: 4 points and 3 elements" in report.warnings[1]
+    assert validate(mesh) == []
