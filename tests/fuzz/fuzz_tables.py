@@ -20,8 +20,13 @@ VERDICTS = {
     "exception": "an error of another type",
     "differs": "other bytes with other threads",
     "input": "the case itself could not be made",
+    "lost": "a damaged file was read, and something is missing without a word",
+    "memory": "more memory than a small file is worth",
 }
-"""Of a harsh case; all but the first two are failures."""
+"""Of a harsh case or a damaged file; all but the first two are failures."""
+
+GROUPS = {"kind": "domain", "metric": "metric", "file": "file", "mutation": "mutation"}
+"""What rows are counted by, and how a table calls it."""
 
 FAILURES = [verdict for verdict in VERDICTS if verdict not in ("ok", "refused")]
 
@@ -44,8 +49,8 @@ def table_lines(rows):
         yield from _most_common(name, (row.get(key, "") for row in rows))
 
 
-def harsh_table_lines(rows):
-    """Verdicts by kind of domain, of metric, and by whether doubles can hold the metric."""
+def verdict_table_lines(rows):
+    """Verdicts by kind of domain, metric, file and damage, and by what doubles can hold."""
     seen = {row["verdict"] for row in rows}
     columns = [verdict for verdict in VERDICTS if verdict in seen]
     yield f"{'':22}{'cases':>7}" + "".join(f"{verdict:>10}" for verdict in columns)
@@ -64,12 +69,13 @@ def harsh_table_lines(rows):
 
 
 def _groups(rows):
-    """Pairs of a name and its rows: domains, metrics, what the door lets in, and all."""
+    """Pairs of a name and its rows: domains, metrics, files, what the door lets in, and all."""
     groups = defaultdict(list)
-    rows = [row for row in rows if "kind" in row]
+    rows = [row for row in rows if row.keys() & GROUPS.keys()]
     for row in rows:
-        groups["domain " + row["kind"]].append(row)
-        groups["metric " + row["metric"]].append(row)
+        for key, label in GROUPS.items():
+            if key in row:
+                groups[f"{label} {row[key]}"].append(row)
         if "beyond" in row:
             groups["ratio " + ("above" if row["beyond"] else "below") + " 1e14"].append(row)
     return [*sorted(groups.items()), *([("all", rows)] if rows else [])]

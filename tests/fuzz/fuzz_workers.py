@@ -13,11 +13,14 @@ from queue import Empty, Queue
 RUN = Path(__file__).resolve().parent / "run.py"
 
 
-def outcomes(numbers, *, seed, largest, timeout, dim=2, harsh=False, n_workers=1, deadline=None):
-    """Yield a dict for every case number; with one worker, in their order."""
+def outcomes(numbers, *, seed, largest, timeout, dim=2, mode="", n_workers=1, deadline=None):
+    """Yield a dict for every case number; with one worker, in their order.
+
+    The mode is that of ``run.py``: none, "harsh" or "files".
+    """
     command = [sys.executable, str(RUN), "--worker", "--seed", str(seed), "--dim", str(dim)]
     command += [] if largest is None else ["--largest", str(largest)]
-    command += ["--harsh"] if harsh else []
+    command += [f"--{mode}"] if mode else []
     waiting, rows, stop = iter(list(numbers)), Queue(), threading.Event()
     lock = threading.Lock()
 

@@ -7,6 +7,8 @@ prints a table by kind of domain and of metric, names every failure and writes i
 with eigenvalue ratios to 1e18, domains of needles far from the origin, budgets that are too small;
 ``--harsh --dim 3 --cases 500`` does so in 3D, ``--harsh --case 17`` one case in this process. It
 fails unless every case gives a correct mesh or an error that names place and value.
+``python tests/fuzz/run.py --files --cases 4000`` damages files of every format and reads them: each
+has to be refused with its name, or give what it held.
 """
 
 import argparse
@@ -21,16 +23,23 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from fuzz_tables import harsh_table_lines, table_lines
+from fuzz_tables import table_lines, verdict_table_lines
 from fuzz_workers import outcomes
 
-HARSH_MEMORY = 6 * 2**30
+MEMORY = {"harsh": 6 * 2**30, "files": 3 * 2**30}
 """Bytes that a worker may map: a case that asks for more must not take the machine with it."""
 
+TIMEOUT = {"": 60.0, "harsh": 150.0, "files": 20.0}
+"""Seconds for a case."""
 
-def case_functions(dim, *, harsh, largest):
+
+def case_functions(dim, *, mode, largest):
     """Return what makes a case of a seed and a number, and what runs it."""
-    if harsh:
+    if mode == "files":
+        from file_cases import make_file_case, run_file_case
+
+        return make_file_case, run_file_case
+    if mode == "harsh":
         from harsh_cases import make_harsh_case
         from harsh_judgement import run_harsh_case
 
@@ -47,10 +56,10 @@ def case_functions(dim, *, harsh, largest):
 
 def work(options):
     """Run the cases whose numbers come on the standard input, a line each."""
-    if options.harsh:
+    if options.mode:
         faulthandler.enable()
         if "ASAN_OPTIONS" not in os.environ:  # the sanitizer's shadow takes terabytes of addresses
-            resource.setrlimit(resource.RLIMIT_AS, (HARSH_MEMORY, HARSH_MEMORY))
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY[options.mode],) * 2)
     make, run = functions_of(options)
     for line in sys.stdin:
         say(json.dumps(worked(options, make, run, int(line))))
@@ -64,7 +73,7 @@ def worked(options, make, run, number):
         case = make(options.seed, number)
     except Exception as error:  # the generator's own failure, told apart
         text = f"{type(error).__name__}: {error}"
-        return row | ({"verdict": "input", "message": text} if options.harsh else {"skipped": text})
+        return row | ({"verdict": "input", "message": text} if options.mode else {"skipped": text})
     row |= described(case)
     try:
         row |= asdict(run(case))
@@ -76,6 +85,8 @@ def worked(options, make, run, number):
 
 def described(case):
     """What a table needs to know of a case."""
+    if hasattr(case, "mutation"):
+        return {"file": case.kind, "mutation": case.mutation}
     row = {"kind": case.kind, "metric": case.metric_kind}
     if hasattr(case, "ratio"):
         from harsh_judgement import REFUSED_ABOVE
@@ -85,13 +96,13 @@ def described(case):
 
 
 def functions_of(options):
-    return case_functions(options.dim, harsh=options.harsh, largest=options.largest)
+    return case_functions(options.dim, mode=options.mode, largest=options.largest)
 
 
 def completed(options, row):
-    """Return the row of a harsh case with verdict, problem, and what died with its process."""
+    """Return the row of a case with verdict, problem, and what died with its process."""
     make, _ = functions_of(options)
-    if "kind" not in row and row.get("verdict") != "input":
+    if not row.keys() & {"kind", "file"} and row.get("verdict") != "input":
         row = described(make(options.seed, row["number"])) | row
     row = {"verdict": "exception", "message": row.get("problem", "")} | row
     if row["verdict"] not in ("ok", "refused"):
@@ -122,7 +133,8 @@ def parsed(arguments=None):
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--dim", type=int, default=2, choices=(2, 3))
-    parser.add_argument("--harsh", action="store_true", help="extreme metrics, domains, budgets")
+    parser.add_argument("--harsh", dest="mode", action="store_const", const="harsh", default="")
+    parser.add_argument("--files", dest="mode", action="store_const", const="files")
     parser.add_argument("--workers", type=int, default=1, help="processes side by side")
     parser.add_argument("--seconds", type=float, help="stop after this time")
     parser.add_argument("--timeout", type=float, help="seconds for one case")
@@ -133,7 +145,7 @@ def parsed(arguments=None):
     parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     if options.timeout is None:
-        options.timeout = 150.0 if options.harsh else 60.0
+        options.timeout = TIMEOUT[options.mode]
     return options
 
 
@@ -146,11 +158,11 @@ def run_all(options):
         largest=options.largest,
         timeout=options.timeout,
         dim=options.dim,
-        harsh=options.harsh,
+        mode=options.mode,
         n_workers=options.workers,
         deadline=None if options.seconds is None else time.monotonic() + options.seconds,
     ):
-        rows.append(completed(options, row) if options.harsh else row)
+        rows.append(completed(options, row) if options.mode else row)
         if options.rows:
             with options.rows.open("a") as file:
                 file.write(json.dumps(rows[-1]) + "\n")
@@ -173,7 +185,7 @@ def main():
         say(run(make(options.seed, options.only)))
         return 0
     rows = run_all(options)
-    for line in harsh_table_lines(rows) if options.harsh else table_lines(rows):
+    for line in verdict_table_lines(rows) if options.mode else table_lines(rows):
         say(line)
     bad = [row["number"] for row in rows if row.get("problem")]
     say(f"{len(rows)} cases of seed {options.seed}, {len(bad)} failed: {bad}")

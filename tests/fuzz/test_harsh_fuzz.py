@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from exact_judge import eigenvalue_ratios, mesh_problem
-from fuzz_tables import FAILURES, harsh_table_lines
+from fuzz_tables import FAILURES, verdict_table_lines
 from fuzz_workers import outcomes
 from harsh_cases import make_harsh_case
 from harsh_judgement import run_harsh_case
@@ -16,7 +16,7 @@ from anistar.metric.gradation import GrowthLaw, grade_on, wide_graph
 @pytest.fixture(scope="module", params=[(2, 30), (3, 12)], ids=["2D", "3D"])
 def sample(request):
     dim, n_cases = request.param
-    rows = outcomes(range(n_cases), seed=5, largest=None, timeout=60.0, dim=dim, harsh=True)
+    rows = outcomes(range(n_cases), seed=5, largest=None, timeout=60.0, dim=dim, mode="harsh")
     return n_cases, list(rows)
 
 
@@ -30,7 +30,7 @@ def test_no_harsh_case_kills_hangs_or_gives_something_wrong(sample):
 def test_most_harsh_cases_give_a_mesh(sample):
     n_cases, rows = sample
     assert sum(row["verdict"] == "ok" for row in rows) > 0.6 * n_cases
-    assert any("all " in line for line in harsh_table_lines(rows))
+    assert any("all " in line for line in verdict_table_lines(rows))
 
 
 @pytest.mark.parametrize(

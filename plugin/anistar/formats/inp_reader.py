@@ -35,6 +35,11 @@ _KINDS = {
 }
 _KIND_OF = {name: kind for kind, names in _KINDS.items() for name in names}
 _NODES_OF_REFUSED = {"quad": 4, "triangle6": 6, "hexahedron": 8, "tetra10": 10, "wedge": 6}
+_PARAMETERS = {
+    "NODE": ("NSET",),
+    "ELEMENT": ("TYPE", "ELSET"),
+    "ELSET": ("ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"),
+}
 _GENERATED = 3
 """First, last and step of a set that is generated."""
 
@@ -78,8 +83,7 @@ def _mesh(text: str) -> RawMesh:
 
 
 def _read(content: _Content, keyword: str, parameters: dict[str, str], body: str) -> None:
-    if keyword == "INCLUDE":
-        raise ValueError("it includes another file, which is not opened: put it in here")
+    _check_parameters(keyword, parameters)
     if keyword == "NODE":
         content.nodes.append(_nodes(body))
     elif keyword == "ELEMENT":
@@ -99,6 +103,15 @@ def _read(content: _Content, keyword: str, parameters: dict[str, str], body: str
         name = parameters.get("ELSET", "")
         members = _members(content, body, is_generated="GENERATE" in parameters)
         content.sets.setdefault(name, []).append(members)
+
+
+def _check_parameters(keyword: str, parameters: dict[str, str]) -> None:
+    """Raise if a keyword says what is not understood here, or sends to another file."""
+    if keyword == "INCLUDE" or (keyword in _PARAMETERS and "INPUT" in parameters):
+        raise ValueError("it includes another file, which is not opened: put it in here")
+    unknown = sorted(parameters.keys() - set(_PARAMETERS.get(keyword, parameters)))
+    if unknown:
+        raise ValueError(f"the parameter {unknown[0][:40]} of *{keyword} is not known")
 
 
 def _parameters(text: str) -> dict[str, str]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .raw import Array, Block, RawMesh
 from .reading import reading
-from .tag_arrays import NAMES, decoded_names, take_tags
+from .tag_arrays import NAMES, TAGS, decoded_names, take_tags
 from .vtk_cells import blocks_of
 from .vtu_arrays import Encoding, numbers_of
 from .xml_tree import attribute, count, root_of
@@ -53,6 +53,8 @@ def _mesh(data: bytes) -> RawMesh:
             if raw.names:
                 raise ValueError(f"it has two arrays {NAMES}")
             raw.names = decoded_names(numbers_of(array, encoding).tolist())
+            if any(TAGS not in block.data for block in raw.blocks):
+                raise ValueError(f"it has names in {NAMES} but no tags in {TAGS}")
     return raw
 
 

@@ -1,0 +1,65 @@
+"""Whole files of every format that is read, each with what is beside it."""
+
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from foreign_files import GMSH, MESHIO, gmsh_4, sample, write_with_meshio
+from meshes import square, two_region_cube, two_regions
+
+from anistar import Field, formats
+
+OWN = (".mesh", ".meshb", ".msh", ".vtu", ".vtk", ".xdmf", ".su2")
+WITHOUT_FIELDS = (".su2",)
+ABAQUS = """*HEADING
+two triangles and a line
+*NODE
+1, 0, 0
+2, 1, 0
+3, 1, 1
+4, 0, 1
+*ELEMENT, TYPE=CPS3, ELSET=lower
+1, 1, 2, 3
+*ELEMENT, TYPE=CPS3, ELSET=upper
+2, 1, 3, 4
+*ELEMENT, TYPE=T2D2, ELSET=wall
+3, 1, 2
+"""
+
+
+@cache
+def seeds():
+    """Pairs of a name and the files by their names; the first is the one that is read."""
+    with tempfile.TemporaryDirectory() as folder:
+        found = [*_own(Path(folder)), *_foreign(Path(folder))]
+    return [*found, ("inp", {"m.inp": ABAQUS.encode()})]
+
+
+def _own(folder):
+    for mesh in (square(1), two_regions(2), two_region_cube(1)):
+        on_points, on_cells = sample(mesh)
+        tensors = np.eye(mesh.dim) * (1 + mesh.points[:, :1, None])
+        fields = {**on_points, "M": tensors, "k": Field(on_cells["k"], "cells")}
+        for suffix in OWN:
+            given = None if suffix in WITHOUT_FIELDS else fields
+            formats.write(folder / f"m{suffix}", mesh, given)
+            yield f"own {suffix} {mesh.n_cells} cells", _taken(folder, suffix)
+
+
+def _foreign(folder):
+    mesh = two_regions(2)
+    for kind, (suffix, _) in MESHIO.items():
+        write_with_meshio(folder / f"m{suffix}", mesh, kind)
+        yield kind, _taken(folder, suffix)
+    for kind in GMSH:
+        yield f"gmsh {kind}", {"m.msh": gmsh_4(mesh, kind)}
+
+
+def _taken(folder, suffix):
+    """The files in a folder, that of the suffix first; the folder is empty then."""
+    paths = sorted(folder.iterdir(), key=lambda path: path.suffix != suffix)
+    files = {path.name: path.read_bytes() for path in paths}
+    for path in paths:
+        path.unlink()
+    return files
