@@ -57,7 +57,7 @@ def test_a_text_mesh_with_comments_and_unknown_keywords_is_read(tmp_path):
     assert mesh.edge_tags.tolist() == [9]
     assert mesh.corners.tolist() == [0, 1, 3]
     assert fields == {}
-    assert report.warnings == ("the section SomethingNew is not known and not read",)
+    assert report.warnings == ("not known and not read: the section SomethingNew",)
     assert validate(mesh) == []
 
 

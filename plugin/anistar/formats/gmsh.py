@@ -27,7 +27,7 @@ def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
             raise FormatError(f"cannot write {path}: a quote or line break in the name {name!r}")
     content = exported(mesh, {})
     labels = [name for name, field in fields.items() if field.kind == "label"]
-    parts = ["$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", comment(labels), _names(mesh)]
+    parts = ["$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", comment(labels, list(fields)), _names(mesh)]
     numbers = np.arange(1, mesh.n_points + 1)
     parts += [f"$Nodes\n{mesh.n_points}\n", printed(numbers, content.points), "$EndNodes\n"]
     parts += _elements(content)

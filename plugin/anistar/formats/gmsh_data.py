@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from .notes import labels_of, note_of
 from .numbering import Numbering
 from .raw import Array, RawMesh
 
-_LABELS = "anistar:labels "
+_LABELS, _DATA = "anistar:labels ", "anistar:data "
 _LONGEST_LIST = 1000
 _STEP, _COMPONENTS, _ROWS = 0, 1, 2
 
@@ -28,17 +29,40 @@ class Data:
     values: Array
 
 
-def comment(labels: list[str]) -> str:
-    """Return a section that tells which data are labels; Gmsh itself stores doubles only."""
-    return f"$Comments\n{_LABELS}{json.dumps(labels)}\n$EndComments\n"
+@dataclass
+class Note:
+    """What our files say about themselves: which data are labels, and which there are at all."""
+
+    labels: set[str]
+    data: set[str]
 
 
-def noted_labels(body: str) -> set[str] | None:
+def comment(labels: list[str], data: list[str]) -> str:
+    """Return a section with the names of labels, which Gmsh stores as doubles, and of all data.
+
+    Sections have no mark behind the last one, so that only this tells when data are cut off.
+    """
+    return f"$Comments\n{_LABELS}{json.dumps(labels)}\n{_DATA}{json.dumps(data)}\n$EndComments\n"
+
+
+def note_in(body: str) -> Note | None:
     """Return what `comment` noted, None in a section that is not ours."""
+    found: dict[str, set[str]] = {}
     for line in body.splitlines():
-        if line.startswith(_LABELS):
-            return labels_of(note_of(line.removeprefix(_LABELS)))
-    return None
+        for key in (_LABELS, _DATA):
+            if line.startswith(key):
+                found[key] = labels_of(note_of(line.removeprefix(key)))
+    if _LABELS not in found:
+        return None
+    return Note(found[_LABELS], found.get(_DATA, set()))
+
+
+def check_complete(note: Note | None, data: dict[str, list[Data]]) -> None:
+    """Raise ValueError if data that a file of ours names are missing."""
+    given = {part.name for parts in data.values() for part in parts}
+    missing = sorted(note.data - given) if note else []
+    if missing:
+        raise ValueError(f"it is truncated: the data {missing[0]!r} are missing")
 
 
 def read_data(stream: Stream) -> Data:
@@ -107,9 +131,10 @@ def last_steps(parts: list[Data], warnings: list[str]) -> list[Data]:
         seen.add((part.name, part.step))
         if part.name not in last or part.step > last[part.name].step:
             last[part.name] = part
+    n_steps = Counter(name for name, _ in seen)
     warnings += [
         f"{name!r} is given for several steps, the last one, {part.step}, is kept"
         for name, part in last.items()
-        if sum(name == other for other, _ in seen) > 1
+        if n_steps[name] > 1
     ]
     return list(last.values())

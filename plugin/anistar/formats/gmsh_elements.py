@@ -54,8 +54,25 @@ def kind_and_width(number: int) -> tuple[str, int]:
     return KINDS[number]
 
 
+def joined(runs: list[Elements]) -> list[Elements]:
+    """Return the elements of each kind together, in their order."""
+    kinds: dict[str, list[Elements]] = {}
+    for run in runs:
+        kinds.setdefault(run.kind, []).append(run)
+    return [
+        Elements(
+            kind,
+            *(
+                np.concatenate([getattr(run, name) for run in members])
+                for name in ("numbers", "nodes", "physical", "entity")
+            ),
+        )
+        for kind, members in kinds.items()
+    ]
+
+
 def blocks_of(runs: list[Elements], nodes: Numbering, *, ours: bool) -> list[Block]:
-    """Return a block for each run.
+    """Return a block for each kind.
 
     Without physical groups the numbers of the geometric entities are the only tags; in a file
     that we wrote they mean nothing.

@@ -14,17 +14,19 @@ from pathlib import Path
 from . import gmsh2, gmsh4
 from .gmsh_data import (
     Data,
+    Note,
     add_element_data,
     add_node_data,
+    check_complete,
     last_steps,
-    noted_labels,
+    note_in,
     read_data,
 )
-from .gmsh_elements import Elements, blocks_of
+from .gmsh_elements import Elements, blocks_of, joined
 from .gmsh_streams import Header, Stream, sections
 from .notes import Names
 from .numbering import Numbering
-from .raw import Array, RawMesh
+from .raw import Array, RawMesh, not_read
 from .reading import reading
 
 _NAME = re.compile(r'(\d{1,2})[ \t]+(-?\d{1,10})[ \t]+"(.*)"')
@@ -49,9 +51,9 @@ class _Content:
     placed: list[tuple[tuple[int, int], Elements]] | None = None
     groups: gmsh4.Groups | None = None
     names: Names = field(default_factory=dict)
-    labels: set[str] | None = None
+    note: Note | None = None
     data: dict[str, list[Data]] = field(default_factory=dict)
-    warnings: list[str] = field(default_factory=list)
+    skipped: list[str] = field(default_factory=list)
 
 
 def read(path: Path) -> RawMesh:
@@ -95,12 +97,11 @@ def _read(content: _Content, name: str, stream: Stream, header: Header) -> None:
     elif name in ("NodeData", "ElementData"):
         content.data.setdefault(name, []).append(read_data(stream))
     elif name == "Comments":
-        labels = noted_labels(stream.rest())
-        content.labels = content.labels if labels is None else labels
+        content.note = note_in(stream.rest()) or content.note
     else:
         stream.rest()
         if name not in _WITHOUT_CONTENT:
-            content.warnings.append(f"the section {name} is not known and not read")
+            content.skipped.append(name)
 
 
 def _names(stream: Stream) -> Names:
@@ -122,13 +123,15 @@ def _raw(content: _Content) -> RawMesh:
         missing = "Nodes" if content.nodes is None else "Elements"
         raise ValueError(f"it is truncated: it has no section {missing}")
     numbers, points = content.nodes
-    raw = RawMesh(points.copy(), [], warnings=content.warnings)
+    raw = RawMesh(points.copy(), [], warnings=not_read(content.skipped))
     runs = content.runs
     if runs is None:
         runs = gmsh4.with_groups(content.placed or [], content.groups, raw.warnings)
+    runs = joined(runs)
     nodes = Numbering("node", numbers)
-    raw.blocks = blocks_of(runs, nodes, ours=content.labels is not None)
-    raw.names, raw.labels = content.names, content.labels or set()
+    raw.blocks = blocks_of(runs, nodes, ours=content.note is not None)
+    raw.names, raw.labels = content.names, content.note.labels if content.note else set()
+    check_complete(content.note, content.data)
     for data in last_steps(content.data.get("NodeData", []), raw.warnings):
         add_node_data(raw, nodes, data)
     for data in last_steps(content.data.get("ElementData", []), raw.warnings):

@@ -42,6 +42,8 @@ _PARAMETERS = {
 }
 _GENERATED = 3
 """First, last and step of a set that is generated."""
+_LARGEST_EXPANSION = 100
+"""Members of sets for each letter of a file: sets may be made of ranges and of other sets."""
 
 
 @dataclass
@@ -53,6 +55,14 @@ class _Content:
     elements: list[Array] = field(default_factory=list)
     of_elements: dict[str, list[Array]] = field(default_factory=dict)
     sets: dict[str, list[Array]] = field(default_factory=dict)
+    n_elements: int = 0
+    allowance: int = 0  # members that sets may still have
+
+    def spend(self, n_members: int) -> None:
+        """Count what sets hold or are made of; raise ValueError when it is too much."""
+        self.allowance -= n_members
+        if self.allowance < 0:
+            raise ValueError("its sets have more members than a file of its length can mean")
 
 
 def read(path: Path) -> RawMesh:
@@ -68,7 +78,7 @@ def read(path: Path) -> RawMesh:
 
 
 def _mesh(text: str) -> RawMesh:
-    content = _Content()
+    content = _Content(allowance=_LARGEST_EXPANSION * len(text))
     clean = _COMMENT.sub("", text)
     found = list(_KEYWORD.finditer(clean))
     if not found or clean[: found[0].start()].strip():
@@ -97,11 +107,13 @@ def _read(content: _Content, keyword: str, parameters: dict[str, str], body: str
         rows = rows.reshape(-1, width + 1)
         content.kinds.append(kind)
         content.elements.append(rows)
+        content.n_elements += len(rows)
         if "ELSET" in parameters:
             content.of_elements.setdefault(parameters["ELSET"], []).append(rows[:, 0])
     elif keyword == "ELSET":
         name = parameters.get("ELSET", "")
         members = _members(content, body, is_generated="GENERATE" in parameters)
+        content.spend(len(members))
         content.sets.setdefault(name, []).append(members)
 
 
@@ -134,20 +146,23 @@ def _members(content: _Content, body: str, *, is_generated: bool) -> Array:
     """Return the numbers of the elements in a set, which may be made of other sets."""
     words = [word.strip() for word in body.replace("\n", ",").split(",") if word.strip()]
     if words and not words[0].isdecimal():
-        known = {**content.of_elements, **content.sets}
-        for word in words:
-            if word not in known:
+        parts = []
+        for word in dict.fromkeys(words):
+            known = content.sets.get(word, content.of_elements.get(word))
+            if known is None:
                 raise ValueError(f"a set is made of {word[:40]!r}, which is not given")
-        return np.concatenate([part for word in words for part in known[word]])
+            parts += known
+        content.spend(sum(map(len, parts)))
+        # what is in a set twice does not grow when that is put into others
+        return np.unique(np.concatenate(parts))
     members = _integers("ELSET", body)
     if not is_generated:
         return members
     if len(members) % _GENERATED:
         raise ValueError(f"*ELSET, GENERATE has {len(members)} numbers, no rows of {_GENERATED}")
-    n_elements = sum(len(rows) for rows in content.elements)
     parts = [np.zeros(0, np.int64)]
     for first, last, step in members.reshape(-1, _GENERATED).tolist():
-        if step < 1 or last < first or (last - first) // step >= n_elements:
+        if step < 1 or last < first or (last - first) // step >= content.n_elements:
             raise ValueError(f"*ELSET generates {first} to {last}, more than there are elements")
         parts.append(np.arange(first, last + 1, step))
     return np.concatenate(parts)

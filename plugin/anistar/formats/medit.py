@@ -21,7 +21,7 @@ from .atomic import all_replaced, replaced
 from .gmf_container import Container, Solution
 from .medit_solution import MeditSolution
 from .notes import names_of
-from .raw import Array, Block, RawMesh
+from .raw import Array, Block, RawMesh, not_read
 from .reading import reading
 from .suffixes import BINARY, SOLUTION_OF, solution_beside, suffix_of
 
@@ -62,7 +62,7 @@ def _mesh(container: Container) -> RawMesh:
     kept = [container.tables.get(keyword, nothing) for keyword in ("Corners", "RequiredVertices")]
     raw = RawMesh(container.points, blocks, np.concatenate(kept)[:, 0] - 1)
     raw.names = names_of(container.notes.get("names", []))
-    raw.warnings += [f"the section {name} is not known and not read" for name in container.skipped]
+    raw.warnings += not_read(container.skipped)
     return raw
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ..topology import Float
-from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh
+from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh, not_read
 from .reading import reading
 from .text_rows import integers, parsed
 from .vtk_cells import KINDS
@@ -59,8 +59,7 @@ def _mesh(text: str) -> RawMesh:
         if name != str(tag)
     }
     known = {*_NEEDED, *_OF_MARKERS, *_UNREAD}
-    unread = sorted({key for key, _, _ in entries} - known)
-    raw.warnings += [f"the part {key} is not known and not read" for key in unread]
+    raw.warnings += not_read(sorted({key for key, _, _ in entries} - known))
     return raw
 
 
@@ -134,12 +133,13 @@ def _points(entry: Entry, dim: int) -> Float:
 
 def _markers(entries: list[Entry], dim: int) -> list[tuple[str, Array]]:
     found: list[tuple[str, Array]] = []
-    tag = ""
+    tag, seen = "", set()
     for entry in entries:
         if entry[0] == "MARKER_TAG":
             tag = entry[1]
-            if not tag or tag in (name for name, _ in found):
+            if not tag or tag in seen:
                 raise ValueError(f"the marker {tag!r} has no name, or comes twice")
+            seen.add(tag)
         elif entry[0] == "MARKER_ELEMS":
             if not tag:
                 raise ValueError("MARKER_ELEMS= comes without a MARKER_TAG=")

@@ -72,6 +72,8 @@ def _mesh(data: bytes) -> RawMesh:
         elif section in ("POINTS", "CELLS", "CELL_TYPES"):
             _read_geometry(grid, section, words, numbers)
         else:
+            if not current and grid.points is not None and section != "METADATA":
+                raise ValueError(f"{section[:40]} comes before POINT_DATA or CELL_DATA")
             _read_arrays(grid.data.get(current), grid.length(current), words, numbers)
     return _raw(grid, title)
 

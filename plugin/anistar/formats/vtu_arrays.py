@@ -28,8 +28,9 @@ _TYPES = {
 _TYPES |= {f"U{name}": kind.replace("i", "u") for name, kind in _TYPES.items() if name[0] == "I"}
 _ORDERS = {"LittleEndian": "<", "BigEndian": ">"}
 _COMPRESSORS = ("vtkZLibDataCompressor", "vtkLZMADataCompressor")
-# Compressed numbers of a mesh take no more than this many times the bytes of the file: constant
-# fields shrink a thousandfold, but points and cells hardly tenfold.
+# The numbers of a mesh take no more than this many times the bytes of the file, compressed or not
+# (several arrays may be read at one place): constant fields shrink a thousandfold, but points and
+# cells hardly tenfold.
 _LARGEST_EXPANSION = 100
 _ALWAYS_ALLOWED = 64 * 2**20
 _LZMA_MEMORY = 256 * 2**20
@@ -49,7 +50,7 @@ class Encoding:
         What follows the underscore in `AppendedData`.
     appended_is_raw : bool
     allowance : int
-        Bytes that may still be made of compressed ones.
+        Bytes that all arrays may still take.
     """
 
     order: str
@@ -73,6 +74,12 @@ class Encoding:
             )
         allowance = max(_ALWAYS_ALLOWED, _LARGEST_EXPANSION * n_bytes)
         return cls(_ORDERS[order], _TYPES[header], compressor, appended, raw, allowance)
+
+    def spend(self, n_bytes: int) -> None:
+        """Count what an array takes; raise ValueError when it is too much for the file."""
+        self.allowance -= n_bytes
+        if self.allowance < 0 or n_bytes < 0:
+            raise ValueError(f"its arrays take more than {_LARGEST_EXPANSION} times its length")
 
 
 def numbers_of(element: Element, encoding: Encoding) -> Array:
@@ -146,6 +153,7 @@ def _payload(source: _Bytes, at: int, encoding: Encoding) -> tuple[bytes, int]:
     first = int(np.frombuffer(source.read(at, item.itemsize), item)[0])
     if encoding.compressor is not None:
         return _compressed(source, at, first, encoding)
+    encoding.spend(first)
     # some writers encode the header by itself
     if source.is_padded(at, item.itemsize) or first == 0:
         start = at + source.length(item.itemsize)
@@ -162,11 +170,7 @@ def _compressed(source: _Bytes, at: int, n_blocks: int, encoding: Encoding) -> t
     total = n_blocks * length - (length - last if last else 0)
     if n_blocks == 0:
         total = 0
-    encoding.allowance -= total
-    if encoding.allowance < 0 or total < 0:
-        raise ValueError(
-            f"its compressed arrays would take more than {_LARGEST_EXPANSION} times its length"
-        )
+    encoding.spend(total)
     start = at + source.length(n_header)
     packed = source.read(start, sum(sizes))
     ends = np.cumsum([0, *sizes]).tolist()

@@ -53,8 +53,8 @@ def _mesh(data: bytes) -> RawMesh:
             if raw.names:
                 raise ValueError(f"it has two arrays {NAMES}")
             raw.names = decoded_names(numbers_of(array, encoding).tolist())
-            if any(TAGS not in block.data for block in raw.blocks):
-                raise ValueError(f"it has names in {NAMES} but no tags in {TAGS}")
+            if raw.names and any(TAGS not in block.data for block in raw.blocks):
+                warnings.append(f"it has names in {NAMES} but no tags in {TAGS}")
     return raw
 
 

@@ -9,6 +9,7 @@ XDMF, "XDMF Model and Format", versions 2 and 3.
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
@@ -50,6 +51,7 @@ _UNIFORM = {
 _DIMENSIONS = {"XY": 2, "XYZ": 3}
 _IGNORED = ("Time", "Information")
 _WITH_COUNT = (1, 2)
+_MOST_DIMENSIONS = 3
 
 
 def read(path: Path) -> RawMesh:
@@ -84,10 +86,12 @@ def _mesh(data: bytes) -> RawMesh:
         _data(grid, center, length) for center, length in (("Node", len(points)), ("Cell", n_cells))
     )
     starts = np.cumsum([0, *(len(part) for part in rows)])
-    blocks = [
-        Block(kind, part, None, {n: v[start : start + len(part)] for n, v in on_cells.items()})
-        for kind, part, start in zip(kinds, rows, starts, strict=False)
-    ]
+    blocks = []
+    for kind in dict.fromkeys(kinds):
+        runs = [i for i, other in enumerate(kinds) if other == kind]
+        members = np.concatenate([np.arange(starts[i], starts[i + 1]) for i in runs])
+        data = {name: values[members] for name, values in on_cells.items()}
+        blocks.append(Block(kind, np.concatenate([rows[i] for i in runs]), None, data))
     return RawMesh(points, blocks, point_data=on_points, six="xdmf")
 
 
@@ -164,16 +168,22 @@ def _numbers(item: Element) -> Array:
         raise ValueError(
             f"its numbers are elsewhere ({form}): write them into the XDMF file, or write VTU"
         )
-    shape = [int(n) for n in attribute(item, "Dimensions").split() if n.isdecimal()]
+    shape = _shape(attribute(item, "Dimensions"))
     kind = item.get("NumberType", item.get("DataType", "Float"))
     if kind not in ("Float", "Int", "UInt", "Char", "UChar"):
         raise ValueError(f"numbers of type {kind!r} are not known")
     is_single = item.get("Precision", "4") == "4"
     dtype = np.float32 if is_single else np.float64
     values = parsed(item.text or "", dtype if kind == "Float" else np.int64)
-    size = 1
-    for n in shape:
-        size *= n
-    if size != len(values):
+    if math.prod(shape) != len(values):
         raise ValueError(f"an item announces {shape} numbers, {len(values)} follow")
     return values.reshape(shape)
+
+
+def _shape(text: str) -> list[int]:
+    words, longest = text.split(), len(str(2**63))
+    if not 0 < len(words) <= _MOST_DIMENSIONS or not all(
+        word.isdecimal() and len(word) < longest for word in words
+    ):
+        raise ValueError(f"the dimensions {text[:40]!r} of an item are no counts")
+    return [int(word) for word in words]
