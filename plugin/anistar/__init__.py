@@ -7,7 +7,8 @@ from .consistency import ConsistencyOptions
 from .errors import FormatError, MeshingError
 from .fields import Field
 from .formats import read, write
-from .loop import Loop, LoopError, LoopOptions, Step, adapt_loop
+from .loop import Loop, LoopError, Step, adapt_loop
+from .loop_options import LoopOptions
 from .mesh import Mesh
 from .metric import MetricError, MetricOptions
 from .remesh import Remeshed, remesh

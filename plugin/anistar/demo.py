@@ -15,7 +15,8 @@ from .adapt import AdaptOptions, adapt
 from .demo_problem import EPSILON, channel, solve
 from .demo_result import PICTURES, REPORT, Demo, DemoRow, columns_of, order_of
 from .interpolation_error import l2_norm
-from .loop import Loop, LoopOptions, Step, adapt_loop
+from .loop import Loop, Step, adapt_loop
+from .loop_options import LoopOptions
 from .mesh import Mesh
 from .metric import MetricOptions
 from .remesh import remesh

@@ -13,7 +13,8 @@ import numpy as np
 from .adapt import AdaptOptions
 from .fields import as_fields
 from .interpolation_error import ExactFunction, l2_error
-from .loop import LoopOptions, Solve, Step, adapt_loop
+from .loop import Solve, Step, adapt_loop
+from .loop_options import LoopOptions
 from .mesh import Mesh
 from .metric.kernels.elementary import log, power
 from .remesh import remesh

@@ -10,7 +10,8 @@ from ..demand import check_targets
 from ..errors import FormatError
 from ..file_solver import FILE_KINDS, FileSolver
 from ..formats import read
-from ..loop import Loop, LoopError, LoopOptions, Step, adapt_loop
+from ..loop import Loop, LoopError, Step, adapt_loop
+from ..loop_options import LoopOptions
 from ..mesh import Mesh
 from ..report import as_builtin
 from ..run_folder import RunFolder
