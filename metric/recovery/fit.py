@@ -21,6 +21,11 @@ Rows = NDArray[np.intp]
 PATCH_LEVELS = 4
 """A patch is grown by the neighbours of its points up to this many times less one."""
 
+TRUSTED_LEVELS = 2
+"""The same where there is another method to turn to. Where patches lie on few lines, as in
+needles from one wall to the other, growing ends in features that no quadratic can follow, and
+finds second derivatives where there are none."""
+
 SMALLEST_PIVOT = 1e-3
 """A pivot of the scaled normal matrix is the squared sine of the angle between a basis
 function and the span of the previous ones over the patch. Regular patches, one-sided ones

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .fit import SMALLEST_PIVOT, Fits, covariances, fit_patches
 from .larger_patches import grow_against_noise, is_measurable
 from .least_squares import LAST_PIVOT
-from .noise import NOISE_MARGIN, ROUNDOFF, damped, estimated_noise, hessian_norm
+from .noise import NOISE_MARGIN, ROUNDOFF, damped, estimated_noise, hessian_norm, without_roundoff
 from .projection import L2Projection
 from .setting import Setting
 from .weak import weak_hessian
@@ -37,6 +37,8 @@ class RecoveredHessian:
         How often the patch was grown, -1 without a fit.
     covariance : ndarray (N, d, d)
         Of the patch, in length**2.
+    roundoff : ndarray (N, k)
+        The norm of the Hessian that round-off can make, see `hessian_norm`.
     threshold : ndarray (N, k)
         The norm of the Hessian that noise can make, see `hessian_norm`.
     noise : ndarray (k,)
@@ -48,6 +50,7 @@ class RecoveredHessian:
     pivot: Array
     level: NDArray[np.int8]
     covariance: Array
+    roundoff: Array
     threshold: Array
     noise: Array
 
@@ -59,7 +62,8 @@ class RecoveredHessian:
     @cached_property
     def damped(self) -> Array:
         """The Hessians without what noise can have made."""
-        return damped(self.hessian, self.covariance, self.threshold)
+        clean = without_roundoff(self.hessian, self.covariance, self.roundoff)
+        return damped(clean, self.covariance, self.threshold)
 
 
 def recovered_gradient(setting: Setting) -> Array:
@@ -84,34 +88,43 @@ def hessian_as_found(setting: Setting) -> Array:
 
 def recovered_hessian(setting: Setting, noise: Array | None = None) -> RecoveredHessian:
     """Hessians by the method of the setting, with the means to damp noise (k,)."""
-    points, N = setting.cut.points, len(setting.cut.points)
+    N = len(setting.cut.points)
     noise = _noise(setting) if noise is None else noise
     is_noisy = is_measurable(setting, noise)
+    roundoff = _roundoff(setting)
     if setting.method != "quadratic":
-        graph = setting.graph
-        v = points[graph.neighbours] - points[graph.sources]
-        covariance = covariances(v, graph.offsets[:-1], np.diff(graph.offsets))
         return RecoveredHessian(
             hessian=_projected_hessian(setting),
             order=np.full(N, LINEAR, dtype=np.int8),
             pivot=np.zeros(N),
             level=np.full(N, -1, dtype=np.int8),
-            covariance=covariance,
-            threshold=_roundoff(setting) + setting.noise_gain * noise,
+            covariance=_of_stars(setting),
+            roundoff=roundoff,
+            threshold=roundoff + setting.noise_gain * noise,
             noise=noise,
         )
     fits = _fitted(setting, with_gain=is_noisy)
     if setting.options.method == "auto" and is_noisy:
         grow_against_noise(setting, fits, noise)
+    is_fitted = fits.level >= 0
+    gain = np.where(is_fitted, fits.gain, setting.noise_gain / NOISE_MARGIN)
     return RecoveredHessian(
         hessian=_fitted_hessian(setting, fits),
-        order=np.where(fits.level < 0, LINEAR, QUADRATIC).astype(np.int8),
+        order=np.where(is_fitted, QUADRATIC, LINEAR).astype(np.int8),
         pivot=fits.pivot,
         level=fits.level,
-        covariance=fits.covariance,
-        threshold=_roundoff(setting) + NOISE_MARGIN * fits.gain[:, None] * noise,
+        covariance=np.where(is_fitted[:, None, None], fits.covariance, _of_stars(setting)),
+        roundoff=roundoff,
+        threshold=roundoff + NOISE_MARGIN * gain[:, None] * noise,
         noise=noise,
     )
+
+
+def _of_stars(setting: Setting) -> Array:
+    """Covariances (N, d, d) of the neighbours of the points, for what no patch is fitted to."""
+    points, graph = setting.cut.points, setting.graph
+    v = points[graph.neighbours] - points[graph.sources]
+    return covariances(v, graph.offsets[:-1], np.diff(graph.offsets))
 
 
 def _fitted(setting: Setting, *, with_gain: bool = False) -> Fits:

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ..algebra import determinant
+from ..algebra import determinant, eigh, forward_substituted, lower_factor
 from ..kernels.elementary import power
-from ..kernels.spectra import product
+from ..kernels.spectra import compose, product
 from .fit import Cloud, fit_patches
 
 Array = NDArray[np.float64]
@@ -90,6 +90,37 @@ def hessian_norm(H: Array, covariance: Array) -> Array:
     local = product(covariance[:, None], H)
     square = np.einsum("nkij,nkji->nk", local, local)
     return np.asarray(np.sqrt(np.maximum(square, 0.0)))
+
+
+def without_roundoff(H: Array, covariance: Array, bound: Array) -> Array:
+    """Set eigenvalues of Hessians (n, k, d, d) to zero that round-off alone can make.
+
+    They are taken in coordinates in which the patch has the covariance one, where an eigenvalue
+    is a second difference over the patch in its direction: along a layer, where the mesh is
+    coarse, less curvature counts than across it. Below the bounds (n, k) it has no digit that is
+    right, and would ask for a size by chance.
+    """
+    k, d = H.shape[1:3]
+    L = np.repeat(lower_factor(covariance), k, axis=0)
+    values, vectors = eigh(_seen_from(L, H.reshape(-1, d, d)))
+    is_noise = np.abs(values) <= bound.reshape(-1, 1)
+    rows = np.flatnonzero(is_noise.any(axis=1) & np.isfinite(values).all(axis=1))
+    kept = compose(np.where(is_noise[rows], 0.0, values[rows]), vectors[rows])
+    found = np.array(H).reshape(-1, d, d)
+    found[rows] = _seen_from(_inverse(L[rows]), kept)
+    return found.reshape(H.shape)
+
+
+def _seen_from(L: Array, T: Array) -> Array:
+    """Return ``L^T T L``, symmetric."""
+    S = product(L.transpose(0, 2, 1), product(T, L))
+    return np.asarray(0.5 * (S + S.transpose(0, 2, 1)))
+
+
+def _inverse(L: Array) -> Array:
+    """Inverses of lower triangular matrices (n, d, d)."""
+    identity = np.broadcast_to(np.eye(L.shape[-1]), L.shape)
+    return forward_substituted(L, identity)
 
 
 def damped(H: Array, covariance: Array, threshold: Array) -> Array:

@@ -14,7 +14,7 @@ from ..mesh import MeshLike
 from .boundary import Boundary, boundary_of
 from .cells import CellGeometry, cell_geometry
 from .cut import CutMesh, cut_open
-from .fit import PATCH_LEVELS, Cloud
+from .fit import PATCH_LEVELS, TRUSTED_LEVELS, Cloud
 from .noise import NOISE_GAIN, P2_NOISE_GAIN, WEAK_NOISE_GAIN
 from .options import EXTRAPOLATED, RecoveryOptions
 from .projection import L2Projection, PatchProjection, Projection
@@ -56,7 +56,9 @@ class Setting:
     @property
     def levels(self) -> range:
         """How often patches for quadratics are grown; six cells would just determine one."""
-        return range(1 if self.samples.space == "P0" else 0, PATCH_LEVELS)
+        first = 1 if self.samples.space == "P0" else 0
+        has_other = self.options.method == "auto"
+        return range(first, first + TRUSTED_LEVELS if has_other else PATCH_LEVELS)
 
     @property
     def noise_gain(self) -> float:

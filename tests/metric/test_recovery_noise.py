@@ -2,7 +2,7 @@ import json
 
 import numpy as np
 import pytest
-from metric_meshes import box, stretched, tanh_layer
+from metric_meshes import box, from_arrays, stretched, tanh_layer
 
 from anistar import metric
 from anistar.metric import MetricOptions, from_fields
@@ -140,3 +140,34 @@ def test_the_confidence_marks_points_without_a_quadratic():
     assert (found.order == 1).all()
     assert (found.level == -1).all()
     assert (found.condition == 0.0).all()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_direction_without_curvature_is_told_from_round_off(dim):
+    """Across it the curvature is clear: round-off must not decide the shape of the cells."""
+    mesh = stretched(box(24 if dim == 2 else 8, dim, 0.15), [1.0] + [30.0] * (dim - 1))
+    u = 1e6 + np.square(mesh.points[:, 0])
+    values = np.linalg.eigvalsh(metric.recover_hessian(mesh, u))
+    np.testing.assert_allclose(values[:, -1], 2.0, rtol=1e-3)
+    fitted = np.linalg.eigvalsh(metric.recover_hessian(mesh, u, method="quadratic"))
+    assert np.abs(fitted[:, :-1]).max() > 1e-12
+    assert np.abs(values[:, :-1]).max() < 1e-14
+
+
+def needles(n):
+    """Triangles from one wall of a strip to the other: no patch determines a quadratic."""
+    x = np.arange(n + 1) / n
+    points = np.concatenate([np.stack([x, 0 * x], axis=1), np.stack([x, 0 * x + 1], axis=1)])
+    low = np.arange(n)
+    high = low + n + 1
+    cells = [np.stack([low, low + 1, high], 1), np.stack([low + 1, high + 1, high], 1)]
+    return from_arrays(points, np.concatenate(cells))
+
+
+def test_curvature_is_found_where_no_patch_determines_a_quadratic():
+    mesh = needles(20)
+    H = metric.recover_hessian(mesh, np.square(mesh.points[:, 0]))
+    assert (metric.recovery_confidence(mesh, np.square(mesh.points[:, 0])).order == 1).all()
+    inside = np.abs(mesh.points[:, 0] - 0.5) < 0.35
+    np.testing.assert_allclose(H[inside, 0, 0], 2.0, rtol=1e-9)
+    assert not H[:, 1, 1].any()
