@@ -6,6 +6,7 @@ in 1 / length**2: an edge v should satisfy ``v^T M v = 1``.
 
 from .bounds import bounded
 from .checks import MetricError, check_metric
+from .coarsening import limited_coarsening
 from .combination import intersected, limited_step, mean
 from .complexity import ELEMENTS_PER_COMPLEXITY, complexity
 from .curvature import curvature_metric
@@ -75,6 +76,7 @@ __all__ = [
     "implied_metric",
     "interpolated",
     "intersected",
+    "limited_coarsening",
     "limited_step",
     "log_metric",
     "mean",

@@ -140,8 +140,7 @@ def limited_step(current: Array, target: Array, ratio: float = 2.0) -> Array:
     ValueError
         If `ratio` is out of range.
     """
-    if not (np.isfinite(ratio) and ratio > 1.0):
-        raise ValueError(f"ratio must be above 1, got {ratio}")
+    check_step("ratio", ratio)
     start = check_metric(current, name="current metric")
     n, d = start.shape[:2]
     result = check_metric(target, n_points=n, dim=d, name="target metric")
@@ -151,3 +150,9 @@ def limited_step(current: Array, target: Array, ratio: float = 2.0) -> Array:
     far = np.flatnonzero((held != values).any(axis=1))
     result[far] = compose(held[far], product(L[far], vectors[far]))
     return check_result(result, "the limited step")
+
+
+def check_step(name: str, ratio: float) -> None:
+    """Raise ValueError if a ratio between sizes is not above 1."""
+    if not (np.isfinite(ratio) and ratio > 1.0):
+        raise ValueError(f"{name} must be above 1, got {ratio}")

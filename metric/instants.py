@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .aim import missed
 from .algebra import absolute
+from .coarsening import coarsening_limited
 from .combination import intersection_of
 from .field_hessians import FieldHessian, hessians_of
 from .finishing import Finishing, finishing_on
@@ -106,6 +107,9 @@ def from_instants(
     finishings = [finishing_on(mesh, options) for mesh in meshes]
     found = _recovered(finishings, fields, options)
     bases = _bases(meshes, found, steps, options)
+    if (ratio := options.max_coarsening) is not None:
+        pairs = zip(meshes, bases, strict=True)
+        bases = [coarsening_limited(mesh, base, ratio) for mesh, base in pairs]
 
     def attempt(factor: float) -> tuple[float, list[Growth]]:
         pairs = zip(finishings, bases, strict=True)

@@ -38,8 +38,8 @@ class Ledger:
         How many factors were tried.
     stages : tuple of Stage
         ``normalised <field>`` for each field and ``intersected``, or for fields that are
-        normalised together ``normalised``; then for the chosen factor ``rescaled``, ``bounded``
-        and ``graded``.
+        normalised together ``normalised``; ``held`` where `max_coarsening` is given; then for the
+        chosen factor ``rescaled``, ``bounded`` and ``graded``.
     gradation_rounds : int
         Rounds of the gradation of the returned metric.
     distortion : dict

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .aliases import advice, asks_nothing, flattened, our_name, our_value
 from .bounds import check_bounds
-from .combination import check_rule
+from .combination import check_rule, check_step
 from .complexity import REAL_ELEMENTS_PER_COMPLEXITY
 from .gradation import DEFAULT_FACTORS, GrowthLaw
 from .normalisation import check_p, check_target
@@ -53,6 +53,10 @@ class MetricOptions:
         Largest ratio of sizes at a point.
     restrict_anisotropy_first : bool
         Apply `a_max` to the Hessians as well, before they are normalised.
+    max_coarsening : float, optional
+        By what factor sizes may at most grow against those of the mesh itself, before bounds and
+        gradation, see `limited_coarsening`. For the repeated passes of a loop, which has an
+        option for it.
     gradation_factor : float, None or "auto"
         Growth of sizes from one unit edge to the next; "auto" is 1.5 in 2D and 2 in 3D.
     gradation_model : {"physical", "metric", "mixed"}
@@ -76,6 +80,7 @@ class MetricOptions:
     h_max: Bound = None
     a_max: Bound = None
     restrict_anisotropy_first: bool = False
+    max_coarsening: float | None = None
     gradation_factor: float | str | None = "auto"
     gradation_model: str = "mixed"
     max_distortion: float | None = None
@@ -101,6 +106,8 @@ class MetricOptions:
         check_p(self.p)
         check_scale(self.scale)
         check_rule(self.intersection_rule)
+        if self.max_coarsening is not None:
+            check_step("max_coarsening", self.max_coarsening)
         bounds = {
             name: None if callable(bound) else bound
             for name in ("h_min", "h_max", "a_max")

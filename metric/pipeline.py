@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .aim import Aimed, aimed_at
 from .algebra import absolute
+from .coarsening import coarsening_limited
 from .combination import intersection_of
 from .distortion import distortion
 from .estimate import estimate_with
@@ -36,9 +37,9 @@ def from_fields(
     The order is: recover the Hessians, take absolute values, intersect the components of each
     vector, normalise each field in Lp to the target (which also makes fields of different
     units comparable; or scale the fields, intersect them and normalise once), intersect the
-    fields, bound, grade; and one factor on the intersected metric is found such that the
-    complexity, the expected number of elements or the predicted error after all of it meets
-    the target within 0.1 %.
+    fields, limit the coarsening if asked to, bound, grade; and one factor on the metric before
+    the bounds is found such that the complexity, the expected number of elements or the
+    predicted error after all of it meets the target within 0.1 %.
 
     Parameters
     ----------
@@ -75,6 +76,9 @@ def from_fields(
     scales = scales_of(samples, options.scale)
     found = hessians_of(mesh, finishing.graph, samples, options, scales)
     base, stages = _normalised_together(finishing, found, options)
+    if options.max_coarsening is not None:
+        base = coarsening_limited(mesh, base, options.max_coarsening)
+        stages.append(finishing.stage("held", base))
     aimed = aimed_at(finishing, base, found, options)
     rescaled = aimed.factor * base
     stages.append(finishing.stage("rescaled", rescaled))

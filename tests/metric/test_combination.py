@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from metric_meshes import is_at_least, random_metrics
+from metric_meshes import box, is_at_least, random_metrics
 
 from anistar import metric
 from anistar.metric import jacobi, simultaneous_reduction
@@ -190,3 +190,29 @@ def test_a_step_that_is_near_enough_is_the_target_itself():
                           metric.check_metric(3.9 * current))  # fmt: skip
     with pytest.raises(ValueError, match=r"ratio must be above 1, got 1\.0"):
         metric.limited_step(current, current, 1.0)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("ratio", [1.5, 2.0])
+def test_limited_coarsening_is_a_limited_step_that_loses_no_refinement(dim, ratio):
+    mesh = box(6, dim, 0.2)
+    own = metric.implied_metric(mesh)
+    M = random_metrics(len(mesh.points), dim, 5, 1.0)
+    M *= 3.0 * (metric.complexity(mesh, own) / metric.complexity(mesh, M)) ** (2.0 / dim)
+    held = metric.limited_coarsening(mesh, M, ratio)
+    expected = metric.intersected(M, metric.limited_step(own, M, ratio))
+    np.testing.assert_allclose(held, expected, rtol=1e-9, atol=1e-9 * np.abs(M).max())
+    assert is_at_least(held, M)
+    assert is_at_least(held, own / ratio**2)
+    fine = 9.0 * own
+    np.testing.assert_allclose(metric.limited_coarsening(mesh, fine, ratio), fine, rtol=1e-12)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_mesh_with_more_complexity_than_the_metric_is_stretched_first(dim):
+    mesh = box(6, dim, 0.2)
+    own = metric.implied_metric(mesh)
+    coarse = own / 100.0
+    np.testing.assert_allclose(metric.limited_coarsening(mesh, coarse, 2.0), coarse, rtol=1e-12)
+    with pytest.raises(ValueError, match="ratio must be above 1, got 1"):
+        metric.limited_coarsening(mesh, own, 1.0)

@@ -271,3 +271,24 @@ def test_the_distortion_of_the_result_is_computed_once(monkeypatch):
     mesh = box(4, 2)
     metric.from_fields(mesh, {"u": mesh.points[:, 0] ** 2}, MetricOptions(target_complexity=50.0))
     assert len(calls) == 1
+
+
+@pytest.mark.parametrize("target", [{"target_complexity": 300.0}, {"target_elements": 700.0}])
+def test_coarsening_is_limited_at_the_same_target(target):
+    """A bump in one corner, on a mesh that is as fine elsewhere."""
+    mesh = box(20, 2, 0.1)
+    distance = np.sqrt(np.square(mesh.points).sum(axis=1))
+    u = np.square(np.maximum(0.5 - distance, 0.0))
+    free, _ = from_fields(mesh, {"u": u}, MetricOptions(**target, gradation_factor=None))
+    options = MetricOptions(**target, gradation_factor=None, max_coarsening=2.0)
+    held, ledger = from_fields(mesh, {"u": u}, options)
+    assert ledger.reached
+    names = [stage.name for stage in ledger.stages]
+    assert names == ["normalised u", "intersected", "held", "rescaled", "bounded", "graded"]
+    sizes = [1 / np.sqrt(np.linalg.eigvalsh(M)[distance > 0.7, 0]) for M in (free, held)]
+    assert sizes[1].max() < 0.25 < 0.5 < sizes[0].min()
+
+
+def test_a_limit_of_coarsening_is_above_one():
+    with pytest.raises(ValueError, match="max_coarsening must be above 1, got 0.5"):
+        MetricOptions(max_coarsening=0.5)

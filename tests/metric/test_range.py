@@ -91,6 +91,7 @@ OPERATIONS = {
     "john": lambda mesh, M: metric.intersected(M, M[::-1], np.roll(M, 1, 0), rule="john"),
     "mean": lambda mesh, M: metric.mean([M, M[::-1]]),
     "limited_step": lambda mesh, M: metric.limited_step(M, M[::-1]),
+    "limited_coarsening": lambda mesh, M: metric.limited_coarsening(mesh, M),
     "bounded": lambda mesh, M: metric.bounded(M, h_min=1e-3),
     "interpolated": lambda mesh, M: metric.interpolated(
         np.stack([M, M[::-1]], 1), np.full((len(M), 2), 0.5)
