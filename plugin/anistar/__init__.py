@@ -7,12 +7,14 @@ from .consistency import ConsistencyOptions
 from .errors import FormatError, MeshingError
 from .fields import Field
 from .formats import read, write
+from .keeping import KeepOptions, needs_adaptation
 from .loop import Loop, LoopError, Step, adapt_loop
 from .loop_options import LoopOptions
 from .mesh import Mesh
 from .metric import MetricError, MetricOptions
 from .remesh import Remeshed, remesh
 from .remesh_options import RemeshOptions
+from .settling import Settled
 from .study import Study, convergence_study
 from .transfer import (
     TransferOptions,
@@ -21,7 +23,7 @@ from .transfer import (
     transfer_operator,
     transfer_quadrature,
 )
-from .unsteady import UnsteadyOptions, needs_adaptation, unsteady_loop
+from .unsteady import UnsteadyOptions, unsteady_loop
 from .validation import validate
 from .violations import Violation
 
@@ -32,6 +34,7 @@ __all__ = [
     "ConsistencyOptions",
     "Field",
     "FormatError",
+    "KeepOptions",
     "Loop",
     "LoopError",
     "LoopOptions",
@@ -41,6 +44,7 @@ __all__ = [
     "MetricOptions",
     "RemeshOptions",
     "Remeshed",
+    "Settled",
     "SimplexOfStar",
     "Step",
     "Study",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -188,16 +188,45 @@ def adapt(
     MeshingError
         If the mesher cannot finish, or cannot keep to `max_elements`.
     """
-    started = time.perf_counter()
     options = options if options is not None else AdaptOptions()
     require(AdaptOptions, options=options)
+    return adapt_to(mesh, fields, options, geometry=geometry, project=project)
+
+
+class Wanted(NamedTuple):
+    """A metric from fields, and how it was made."""
+
+    metric: Floats
+    ledger: Ledger
+
+
+def metric_for(
+    mesh: Mesh, fields: Mapping[str, Field | ArrayLike], options: AdaptOptions
+) -> Wanted:
+    """Return the metric that `adapt` makes of the fields."""
+    checked = as_fields(mesh, fields)
+    names = metric_field_names(checked, options.metric_fields)
+    return Wanted(*from_fields(mesh, {name: checked[name] for name in names}, options.metric))
+
+
+def adapt_to(
+    mesh: Mesh,
+    fields: Mapping[str, Field | ArrayLike],
+    options: AdaptOptions,
+    *,
+    wanted: Wanted | None = None,
+    geometry: Mesh | None = None,
+    project: Project | None = None,
+) -> Adapted:
+    """Adapt as `adapt` does; `wanted` is what `metric_for` returned, if it is known already."""
+    started = time.perf_counter()
     checked = as_fields(mesh, fields)
     names = metric_field_names(checked, options.metric_fields)
     if options.metric.has_count:
         target = options.metric.complexity_for(mesh.dim)
         check_targets(mesh, options.metric, [target], options.remesh)
     chosen = {name: checked[name] for name in names}
-    ledger, done, corrections = _to_count(mesh, chosen, options, geometry, project)
+    ledger, done, corrections = _to_count(mesh, chosen, options, wanted, geometry, project)
     carried = transfer(mesh, fields, done.mesh, options.transfer)
     report = AdaptReport(
         metric_fields=names,
@@ -214,6 +243,7 @@ def _to_count(
     mesh: Mesh,
     fields: Mapping[str, Field],
     options: AdaptOptions,
+    first: Wanted | None,
     geometry: Mesh | None,
     project: Project | None,
 ) -> tuple[Ledger, Remeshed, int]:
@@ -223,7 +253,7 @@ def _to_count(
     """
     wanted, best = options.metric, None
     for corrections in range(MAX_CORRECTIONS + 1):
-        M, ledger = from_fields(mesh, fields, wanted)
+        M, ledger = first if first is not None else from_fields(mesh, fields, wanted)
         done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
         miss = _miss(options.metric, done.mesh.n_cells)
         if best is None or miss < best[0]:
@@ -231,7 +261,7 @@ def _to_count(
         corrected = _corrected(options.metric, wanted, ledger, done.mesh.n_cells)
         if corrected is None or not done.report.converged:  # a budget stopped it: so would the next
             return ledger, done, corrections
-        wanted = corrected
+        wanted, first = corrected, None
     assert best is not None  # the loop has run
     _, ledger, done = best
     cap = options.metric.max_elements

@@ -23,7 +23,7 @@ _GAUSS_POINTS = np.array([-_OUTER, -_INNER, _INNER, _OUTER])
 _GAUSS_WEIGHTS = (18 + np.array([-1, 1, 1, -1]) * math.sqrt(30)) / 36
 
 
-def interpolation_error(mesh: Mesh, u: ArrayLike) -> float:
+def interpolation_error(mesh: Mesh, u: ArrayLike, *, on: str = "points") -> float:
     """Estimate the L2 norm of the P1 interpolation error of the function behind `u`.
 
     The Hessian H is recovered at the vertices and taken constant, at its mean, in each cell K.
@@ -36,8 +36,12 @@ def interpolation_error(mesh: Mesh, u: ArrayLike) -> float:
     ----------
     mesh : Mesh
         The mesh that carries the field.
-    u : (n,) float array
-        Values at the points, in units U.
+    u : (n,) or (m,) float array
+        Values at the points, or means over the cells, in units U.
+    on : {"points", "cells"}
+        Which of them. The error of cell means is that of the P1 function with the same vertices
+        as the function that they are means of, which is what the metric makes small; the means
+        themselves are a first-order approximation of it.
 
     Returns
     -------
@@ -52,7 +56,7 @@ def interpolation_error(mesh: Mesh, u: ArrayLike) -> float:
     values = np.asarray(u, dtype=np.float64)
     # A power of two keeps squares of huge and tiny values in range, and changes no digit.
     scale = math.ldexp(1.0, math.frexp(float(np.abs(values).max()))[1])
-    hessian = recover_hessian(mesh, values / scale)
+    hessian = recover_hessian(mesh, values / scale, space="P0" if on == "cells" else None)
     in_cells = hessian[mesh.cells].mean(axis=1)
     pairs = list(itertools.combinations(range(mesh.dim + 1), 2))
     corners = mesh.points[mesh.cells]

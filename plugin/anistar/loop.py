@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .adapt import AdaptReport, Floats, adapt, metric_field_names
+from .adapt import (
+    AdaptOptions,
+    AdaptReport,
+    Floats,
+    Wanted,
+    adapt_to,
+    metric_field_names,
+    metric_for,
+)
 from .demand import check_targets
 from .errors import MeshingError
 from .fields import Field, as_fields
 from .interpolation_error import interpolation_error
+from .keeping import needs_adaptation
 from .loop_options import GROWTH, LoopOptions
 from .mesh import Mesh
 from .options import require
@@ -50,9 +58,12 @@ class Step:
     qoi : float or None
         The quantity of interest.
     error : dict of str to float
-        Estimated L2 norm of the P1 interpolation error of each metric field.
+        Estimated L2 norm of the P1 interpolation error of each metric field; of a field in the
+        cells, that of the function with these means.
     seconds : float
         Wall time of the solve.
+    settled : bool
+        Whether the repeats of this complexity ended here, see `LoopOptions`.
     """
 
     iteration: int
@@ -64,10 +75,11 @@ class Step:
     qoi: float | None
     error: dict[str, float]
     seconds: float
+    settled: bool = False
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only: numbers and reports, not the arrays."""
-        names = ("iteration", "complexity", "qoi", "error", "seconds", "report")
+        names = ("iteration", "complexity", "qoi", "error", "seconds", "settled", "report")
         counts = {"points": self.mesh.n_points, "cells": self.mesh.n_cells}
         return {**counts, **{name: as_builtin(getattr(self, name)) for name in names}}
 
@@ -160,15 +172,16 @@ def adapt_loop(
         mesh, options.adapt.metric, options.sure_complexities(mesh.dim), options.adapt.remesh
     )
     geometry = geometry if geometry is not None else mesh
-    steps: list[Step] = list(finished)
+    steps, wanted = list(finished), None
     try:
         while not steps or (reason := _reason_to_stop(steps, options)) is None:
             state = (
-                _adapted(steps[-1], options, geometry, project)
+                _adapted(steps, options, wanted, geometry, project)
                 if steps
                 else _State(0, None, mesh, {}, None, None)
             )
-            steps.append(_solved(solve, state, options))
+            step, wanted = _judged(_solved(solve, state, options), steps, options)
+            steps.append(step)
             if callback is not None and callback(steps[-1]) is True:
                 return Loop(tuple(steps), "stopped by the callback")
         return Loop(tuple(steps), reason)
@@ -188,7 +201,7 @@ def _solved(solve: Solve, state: _State, options: LoopOptions) -> Step:
     _refuse_nan(state.mesh, checked)
     qoi = None if options.qoi is None else float(options.qoi(state.mesh, dict(fields)))
     names = metric_field_names(checked, options.adapt.metric_fields)
-    error = {name: _estimated(state.mesh, checked[name].values) for name in names}
+    error = {name: _estimated(state.mesh, checked[name]) for name in names}
     return Step(
         iteration=state.iteration,
         complexity=state.complexity,
@@ -202,16 +215,72 @@ def _solved(solve: Solve, state: _State, options: LoopOptions) -> Step:
     )
 
 
-def _adapted(step: Step, options: LoopOptions, geometry: Mesh, project: Project | None) -> _State:
-    complexity = options.complexity_after(step.iteration, step.mesh.dim)
-    metric = options.adapt.metric
+def _judged(step: Step, before: list[Step], options: LoopOptions) -> tuple[Step, Wanted | None]:
+    """Return the step, marked where the repeats of its complexity end, and the next metric.
+
+    There is one if it was needed to decide whether the mesh is kept.
+    """
+    position = step.iteration + _skipped(before, options)
+    if not options.repeats_after(position):
+        return step, None
+    last = before[-1]
+    if (
+        options.settled is not None
+        and last.complexity == step.complexity
+        and options.settled.holds(
+            (last.mesh.n_points, step.mesh.n_points), (last.error, step.error)
+        )
+    ):
+        return replace(step, settled=True), None
+    if options.keep is None:
+        return step, None
+    wanted = metric_for(step.mesh, step.fields, _stages([*before, step], options))
+    if needs_adaptation(step.mesh, wanted.metric, options.keep):
+        return step, wanted
+    return replace(step, settled=True), None
+
+
+def _skipped(steps: list[Step], options: LoopOptions) -> int:
+    """Return how many repeats of complexities were left out after some steps."""
+    skipped = 0
+    for step in steps:
+        if step.settled:
+            skipped += options.repeats_after(step.iteration + skipped)
+    return skipped
+
+
+def _stages(steps: list[Step], options: LoopOptions) -> AdaptOptions:
+    """Return the options of the adaptation after some steps."""
+    step = steps[-1]
+    metric, skipped = options.adapt.metric, _skipped(steps, options)
+    complexity = options.complexity_after(step.iteration, step.mesh.dim, skipped)
+    # the first mesh was made by somebody who did not know the solution
+    limit = options.max_coarsening if step.iteration > 0 else None
     if metric.target_elements is not None and not options.complexities:
         elements = metric.target_elements * GROWTH**step.iteration
-        metric = dataclasses.replace(metric, target_elements=elements)
+        metric = replace(metric, target_elements=elements, max_coarsening=limit)
     else:
-        metric = dataclasses.replace(metric, target_complexity=complexity, target_elements=None)
-    stages = dataclasses.replace(options.adapt, metric=metric)
-    done = adapt(step.mesh, step.fields, stages, geometry=geometry, project=project)
+        metric = replace(
+            metric,
+            target_complexity=complexity,
+            target_elements=None,
+            max_coarsening=limit,
+        )
+    return replace(options.adapt, metric=metric)
+
+
+def _adapted(
+    steps: list[Step],
+    options: LoopOptions,
+    wanted: Wanted | None,
+    geometry: Mesh,
+    project: Project | None,
+) -> _State:
+    step, stages = steps[-1], _stages(steps, options)
+    done = adapt_to(
+        step.mesh, step.fields, stages, wanted=wanted, geometry=geometry, project=project
+    )
+    complexity = options.complexity_after(step.iteration, step.mesh.dim, _skipped(steps, options))
     return _State(step.iteration + 1, complexity, done.mesh, done.fields, done.metric, done.report)
 
 
@@ -223,15 +292,16 @@ def _reason_to_stop(steps: list[Step], options: LoopOptions) -> str | None:
         before, now = steps[-2].qoi, step.qoi
         if before is not None and now is not None and abs(now - before) <= options.rtol * abs(now):
             return f"quantity of interest within rtol {options.rtol:g}"
-    if options.complexity_after(step.iteration, step.mesh.dim) is None:
-        done = step.iteration == len(options.complexities or ())
+    skipped = _skipped(steps, options)
+    if options.complexity_after(step.iteration, step.mesh.dim, skipped) is None:
+        done = step.iteration + skipped == len(options.complexities or ())
         return "complexities done" if done else f"max_iterations {options.max_iterations} reached"
     return None
 
 
-def _estimated(mesh: Mesh, values: Floats) -> float:
-    columns = values.reshape(len(values), -1).T
-    errors = np.array([interpolation_error(mesh, column) for column in columns])
+def _estimated(mesh: Mesh, field: Field) -> float:
+    columns = field.values.reshape(len(field.values), -1).T
+    errors = np.array([interpolation_error(mesh, column, on=field.on) for column in columns])
     largest = float(errors.max())
     # Relative to the largest, whose square may be out of range.
     return largest * math.sqrt(float(np.square(errors / largest).sum())) if largest > 0 else largest

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from .adapt import AdaptOptions
+from .keeping import KeepOptions
 from .mesh import Mesh
 from .options import require
+from .settling import Settled, check_max_coarsening
 
 Quantity = Callable[[Mesh, dict[str, Any]], float]
 
@@ -41,6 +44,17 @@ class LoopOptions:
         Stop when two successive quantities differ by at most ``rtol`` times the last.
     max_iterations : int
         Largest number of adaptations.
+    max_coarsening : float or None
+        By what factor sizes may at most grow from one mesh to the next, beyond what a smaller
+        complexity explains; see `anistar.metric.limited_coarsening`. The first mesh says nothing
+        of the solution, and is not held to. None means no limit.
+    settled : Settled or None
+        What ends the repeats of one complexity before all of them are done, never the loop. None
+        makes all of them.
+    keep : KeepOptions or None
+        They end too when the mesh is as near as this to the metric that is recovered on it, see
+        `anistar.needs_adaptation`: for solvers so expensive that every solve counts. None does
+        not ask: a mesh that may be kept for a while is not yet the best one for its complexity.
 
     Raises
     ------
@@ -54,9 +68,17 @@ class LoopOptions:
     qoi: Quantity | None = None
     rtol: float | None = None
     max_iterations: int = 20
+    max_coarsening: float | None = 2.0
+    settled: Settled | None = field(default_factory=Settled)
+    keep: KeepOptions | None = None
 
     def __post_init__(self) -> None:
         require(AdaptOptions, adapt=self.adapt)
+        if self.settled is not None:
+            require(Settled, settled=self.settled)
+        if self.keep is not None:
+            require(KeepOptions, keep=self.keep)
+        check_max_coarsening(self.max_coarsening, self.adapt)
         if self.complexities is not None:
             values = tuple(float(value) for value in self.complexities)
             for index, value in enumerate(values):
@@ -79,15 +101,25 @@ class LoopOptions:
         if not self.complexities and self.target_error is None and self.rtol is None:
             raise ValueError("give complexities, target_error, or qoi with rtol")
 
-    def complexity_after(self, iteration: int, dim: int) -> float | None:
-        """Return the target complexity after a solve, None when there is none left."""
+    def complexity_after(self, iteration: int, dim: int, skipped: int = 0) -> float | None:
+        """Return the target complexity after a solve, None when there is none left.
+
+        `skipped` counts the repeats that were left out so far.
+        """
         if iteration >= self.max_iterations:
             return None
         if self.complexities:
-            return self.complexities[iteration] if iteration < len(self.complexities) else None
+            position = iteration + skipped
+            return self.complexities[position] if position < len(self.complexities) else None
         metric = self.adapt.metric
         start = metric.complexity_for(dim) if metric.has_count else START
         return float(start * GROWTH**iteration)
+
+    def repeats_after(self, position: int) -> int:
+        """Return how often the complexity before a position is repeated from there on."""
+        targets = self.complexities or ()
+        before, rest = targets[position - 1 : position], targets[position:]
+        return len(list(itertools.takewhile(lambda value: value in before, rest)))
 
     def sure_complexities(self, dim: int) -> Sequence[float]:
         """Return the targets that are known before the first solve."""

@@ -168,6 +168,7 @@ class RunFolder:
             qoi=said["qoi"],
             error=said["error"],
             seconds=said["seconds"],
+            settled=said["settled"],
         )
 
     def _report(self, loop: Loop) -> None:

@@ -15,15 +15,15 @@ from .adapt import AdaptOptions, Floats, metric_field_names
 from .demand import check_targets
 from .errors import MeshingError
 from .fields import Field, as_fields
+from .keeping import KeepOptions, needs_adaptation
 from .mesh import Mesh
-from .metric import check_metric, from_fields
+from .metric import from_fields
 from .metric.scaling import Scale, scale_of
 from .options import require
 from .projection import Project
-from .quality import UNIT, metric_lengths
 from .remesh import remesh
 from .report import attributes
-from .topology import unique_edges
+from .settling import check_max_coarsening
 from .transfer import TransferOptions, transfer
 
 Fields = dict[str, Any]
@@ -50,10 +50,12 @@ class UnsteadyOptions:
         Steps from one adaptation to the next.
     passes : int
         How often a window is solved again on a mesh made for it.
-    unit_edges : float
-        The mesh is kept as long as this share of its edges is unit, see `needs_adaptation`.
-    longest_edge : float
-        And as long as no edge is longer, in the metric.
+    max_coarsening : float or None
+        By what factor sizes may at most grow from one mesh to the next, beyond the first; see
+        `LoopOptions`. None means no limit.
+    keep : KeepOptions or None
+        How far the mesh may be from the metric of a window and still serve it, see
+        `needs_adaptation`. None makes `passes` new meshes for every window.
 
     Raises
     ------
@@ -64,8 +66,8 @@ class UnsteadyOptions:
     adapt: AdaptOptions = field(default_factory=AdaptOptions)
     window: int = 8
     passes: int = 1
-    unit_edges: float = 0.8
-    longest_edge: float = 3.0
+    max_coarsening: float | None = 2.0
+    keep: KeepOptions | None = field(default_factory=KeepOptions)
 
     def __post_init__(self) -> None:
         require(AdaptOptions, adapt=self.adapt)
@@ -74,10 +76,9 @@ class UnsteadyOptions:
         for name in ("window", "passes"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")
-        if not 0 <= self.unit_edges <= 1:
-            raise ValueError(f"unit_edges must be in [0, 1], got {self.unit_edges}")
-        if not self.longest_edge > UNIT[1]:
-            raise ValueError(f"longest_edge must be above sqrt(2), got {self.longest_edge}")
+        if self.keep is not None:
+            require(KeepOptions, keep=self.keep)
+        check_max_coarsening(self.max_coarsening, self.adapt)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,35 +128,6 @@ class Unsteady:
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only: the end `time` and the `windows`."""
         return {"time": self.last.time, "windows": [window.as_dict() for window in self.windows]}
-
-
-def needs_adaptation(
-    mesh: Mesh, M: Floats, *, unit_edges: float = 0.8, longest_edge: float = 3.0
-) -> bool:
-    """Return whether a mesh has moved too far from a metric to be kept.
-
-    A new mesh has more than 95 % unit edges and none longer than 2. The thresholds are lower, so
-    that a mesh is kept while the solution changes little, and a new one is not made anew at once.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    M : (n, d, d) float64
-        Metric at its points.
-    unit_edges : float
-        Smallest share of edges with a length in [1/sqrt(2), sqrt(2)].
-    longest_edge : float
-        Largest length in the metric.
-
-    Raises
-    ------
-    MetricError
-        If a tensor is not symmetric positive definite; the point is named.
-    """
-    M = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
-    lengths = metric_lengths(mesh, M, unique_edges(mesh.cells, mesh.n_points))
-    is_unit = (lengths >= UNIT[0]) & (lengths <= UNIT[1])
-    return bool(is_unit.mean() < unit_edges or lengths.max() > longest_edge)
 
 
 def unsteady_loop(
@@ -222,7 +194,7 @@ def unsteady_loop(
     if options.adapt.metric.has_count:
         target = options.adapt.metric.complexity_for(mesh.dim)
         check_targets(mesh, options.adapt.metric, [target], options.adapt.remesh)
-    shape = _Shape(geometry if geometry is not None else mesh, project)
+    shape = _Shape(mesh, geometry if geometry is not None else mesh, project)
     now = Instant(instants[0], mesh, dict(fields(mesh) if callable(fields) else fields))
     as_fields(mesh, now.fields)
     carry = partial(_evaluated, fields) if callable(fields) else partial(_carried, options.adapt)
@@ -246,6 +218,7 @@ Carry = Callable[[Instant, Mesh], tuple[Fields, dict[str, Any] | None]]
 
 @dataclass(frozen=True)
 class _Shape:
+    first: Mesh
     geometry: Mesh
     project: Project | None
 
@@ -277,9 +250,9 @@ def _solved(
     made, report = 0, None
     history = _advanced(advance, begin, ends)
     while made < options.passes:
-        mesh, metric = history[0].mesh, _window_metric(history, options.adapt)
-        thresholds = {"unit_edges": options.unit_edges, "longest_edge": options.longest_edge}
-        if not needs_adaptation(mesh, metric, **thresholds):
+        mesh = history[0].mesh
+        metric = _window_metric(history, _on_the_way(options, is_first=mesh is shape.first))
+        if options.keep is not None and not needs_adaptation(mesh, metric, options.keep):
             break
         new = remesh(
             mesh,
@@ -314,6 +287,12 @@ def _advanced(advance: Advance, start: Instant, ends: list[float]) -> list[Insta
         as_fields(now.mesh, found)
         history.append(Instant(end, now.mesh, dict(found)))
     return history
+
+
+def _on_the_way(options: UnsteadyOptions, *, is_first: bool) -> AdaptOptions:
+    """Return the options for a metric on a mesh; the first mesh knows nothing of the solution."""
+    limit = None if is_first else options.max_coarsening
+    return replace(options.adapt, metric=replace(options.adapt.metric, max_coarsening=limit))
 
 
 def _window_metric(history: Sequence[Instant], options: AdaptOptions) -> Floats:

@@ -2,14 +2,18 @@ import json
 
 import numpy as np
 import pytest
-from meshes import annulus, square
+from meshes import annulus, cube, square
 
 from anistar.adapt import AdaptOptions
 from anistar.errors import MeshingError
 from anistar.fields import Field
-from anistar.loop import LoopError, LoopOptions, adapt_loop
-from anistar.metric import MetricOptions
+from anistar.interpolation_error import interpolation_error
+from anistar.keeping import KeepOptions, needs_adaptation
+from anistar.loop import LoopError, adapt_loop
+from anistar.loop_options import LoopOptions
+from anistar.metric import MetricOptions, from_fields
 from anistar.remesh import RemeshOptions
+from anistar.settling import Settled
 from anistar.topology import cell_volumes
 from anistar.validation import validate
 
@@ -205,6 +209,17 @@ class TestErrorsKeepTheStepsSoFar:
             r"target_error = 0\.5 is an option of one metric",
         ),
         ({"complexities": [1], "max_iterations": 0}, "max_iterations must be at least 1, not 0"),
+        (
+            {"complexities": [1], "max_coarsening": 0.9},
+            r"max_coarsening must be above 1, or None, got 0\.9",
+        ),
+        (
+            {
+                "complexities": [1],
+                "adapt": AdaptOptions(metric=MetricOptions(max_coarsening=3.0)),
+            },
+            r"max_coarsening = 3\.0 is an option of one metric",
+        ),
     ],
 )
 def test_a_bad_option_is_named_with_its_bound(options, message):
@@ -241,3 +256,90 @@ def test_every_adaptation_gets_the_first_mesh_as_the_geometry():
         assert validate(step.mesh) == []
         (region,) = [tag for tag in step.report.remesh.tags if tag.dim == 2]
         assert region.before == pytest.approx(area, rel=1e-14)
+
+
+def repeated(**options):
+    """Six passes at each of two complexities, with limits that end them early or not."""
+    targets = [150] * 6 + [300] * 6
+    return adapt_loop(interpolate, square(8), LoopOptions(complexities=targets, **options))
+
+
+def test_the_repeats_of_a_complexity_end_when_nothing_changes_and_the_loop_goes_on():
+    loop = repeated(settled=Settled(points=0.1, error=0.5))
+    assert loop.stop_reason == "complexities done"
+    for target in (150, 300):
+        steps = [step for step in loop.steps if step.complexity == target]
+        assert 2 <= len(steps) < 6
+        assert [step.settled for step in steps] == [False] * (len(steps) - 1) + [True]
+        before, now = steps[-2:]
+        assert now.mesh.n_points == pytest.approx(before.mesh.n_points, rel=0.1)
+        assert now.error["u"] == pytest.approx(before.error["u"], rel=0.5)
+        assert validate(now.mesh) == []
+    assert loop.as_dict()["steps"][-1]["settled"] is True
+    assert len(repeated(settled=None).steps) == 13
+
+
+def test_the_repeats_of_a_complexity_end_when_the_mesh_may_be_kept():
+    loop = repeated(settled=None, keep=KeepOptions(under=0.5, over=1.0, longest=6.0))
+    assert loop.stop_reason == "complexities done"
+    assert len(loop.steps) < 9
+    last = [step for step in loop.steps if step.complexity == 150][-1]
+    assert last.settled
+    metric, _ = from_fields(last.mesh, last.fields, MetricOptions(target_complexity=150))
+    assert not needs_adaptation(last.mesh, metric, KeepOptions(under=0.5, over=1.0, longest=6.0))
+
+
+def test_a_loop_that_goes_on_remembers_which_repeats_it_left_out():
+    options = LoopOptions(complexities=[150] * 5 + [300], settled=Settled(points=0.1, error=0.5))
+    whole = adapt_loop(interpolate, square(8), options)
+    assert len(whole.steps) < 7
+    at = next(step.iteration for step in whole.steps if step.settled)
+    again = adapt_loop(interpolate, square(8), options, finished=whole.steps[: at + 1])
+    assert [step.complexity for step in again.steps] == [step.complexity for step in whole.steps]
+    assert np.array_equal(again.steps[-1].mesh.points, whole.steps[-1].mesh.points)
+
+
+def test_only_the_meshes_of_the_loop_itself_hold_their_sizes():
+    loop = adapt_loop(interpolate, square(8), LoopOptions(complexities=[150, 150], settled=None))
+    stages = [[stage.name for stage in step.report.metric.stages] for step in loop.steps[1:]]
+    assert ["held" in names for names in stages] == [False, True]
+    free = LoopOptions(complexities=[150, 150], max_coarsening=None)
+    loop = adapt_loop(interpolate, square(8), free)
+    assert all(stage.name != "held" for stage in loop.steps[-1].report.metric.stages)
+
+
+@pytest.mark.parametrize(("make", "targets"), [(square, [200, 400, 800]), (cube, [100, 300])])
+def test_means_over_cells_drive_a_loop(make, targets):
+    first = make(6)
+
+    def solve(mesh, fields):
+        middle = mesh.points[mesh.cells].mean(axis=1)
+        return {"c": Field(layer(middle), "cells")}
+
+    adapt = AdaptOptions(metric_fields=["c"])
+    loop = adapt_loop(solve, first, LoopOptions(adapt=adapt, complexities=targets))
+    last = loop.steps[-1]
+    assert validate(last.mesh, first) == []
+    assert last.fields["c"].on == "cells"
+    assert last.error["c"] < 0.6 * loop.steps[1].error["c"]
+    at_points = interpolation_error(last.mesh, layer(last.mesh.points))
+    assert last.error["c"] == pytest.approx(at_points, rel=0.3)
+
+
+def test_linear_means_over_cells_have_no_error():
+    mesh = square(6)
+    means = mesh.points[mesh.cells].mean(axis=1).sum(axis=1)
+    assert interpolation_error(mesh, means, on="cells") < 1e-12
+
+
+def test_a_field_that_is_constant_up_to_round_off_makes_a_uniform_mesh():
+    """No digit of its Hessian is right."""
+
+    def solve(mesh, fields):
+        noise = np.random.default_rng(mesh.n_points).standard_normal(mesh.n_points)
+        return {"u": 3.0 * (1.0 + 1e-16 * noise)}
+
+    loop = adapt_loop(solve, square(8), LoopOptions(complexities=[200, 200]))
+    M = loop.steps[-1].metric
+    np.testing.assert_allclose(M, np.tile(200.0 * np.eye(2), (len(M), 1, 1)), rtol=0.01, atol=2.0)
+    assert validate(loop.steps[-1].mesh) == []

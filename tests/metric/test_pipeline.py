@@ -290,5 +290,5 @@ def test_coarsening_is_limited_at_the_same_target(target):
 
 
 def test_a_limit_of_coarsening_is_above_one():
-    with pytest.raises(ValueError, match="max_coarsening must be above 1, got 0.5"):
+    with pytest.raises(ValueError, match=r"max_coarsening must be above 1, got 0\.5"):
         MetricOptions(max_coarsening=0.5)
