@@ -39,6 +39,7 @@ from .recovery import (
     recover_hessian,
     recovery_confidence,
 )
+from .refinement import limited_refinement
 from .size_fields import size_in_box, size_near_boundary, size_near_points
 from .sizes import from_sizes
 from .tensor_functions import absolute, exp_metric, interpolated, log_metric, sqrt_metric
@@ -77,6 +78,7 @@ __all__ = [
     "interpolated",
     "intersected",
     "limited_coarsening",
+    "limited_refinement",
     "limited_step",
     "log_metric",
     "mean",

@@ -56,6 +56,9 @@ class AdaptOptions:
     metric_fields : sequence of str, optional
         Names of the fields that make the metric; None means every scalar and vector field at
         the points.
+    max_refinement : float, optional
+        That of `remesh`, in its place: the factor by which sizes shrink in one adaptation at
+        most, for a first mesh that is much too coarse.
 
     Raises
     ------
@@ -70,10 +73,14 @@ class AdaptOptions:
     remesh: RemeshOptions = field(default_factory=RemeshOptions)
     transfer: TransferOptions = field(default_factory=_transfer_to_a_remesh)
     metric_fields: Sequence[str] | None = None
+    max_refinement: float | None = None
 
     def __post_init__(self) -> None:
         require(MetricOptions, metric=self.metric)
         require(RemeshOptions, remesh=self.remesh)
+        if self.max_refinement is not None:
+            limited = replace(self.remesh, max_refinement=self.max_refinement)
+            object.__setattr__(self, "remesh", limited)
         require(TransferOptions, transfer=self.transfer)
         names = self.metric_fields
         if names is None:

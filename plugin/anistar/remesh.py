@@ -18,6 +18,7 @@ from .mesh import Mesh
 from .metric import check_metric
 from .options import require
 from .projection import Project, pointwise
+from .ramp import approached, carried, noted
 from .remesh_options import RemeshOptions
 from .remesh_report import RemeshReport, report_of
 from .size_range import check_sizes
@@ -61,7 +62,8 @@ def remesh(
         Carries the metric: P1 interpolation of its logarithm.
     M : (n, d, d) array
         Metric at the points of `mesh`, in 1 / length**2. It is taken as given: no bounds,
-        no gradation, no scaling.
+        no gradation, no scaling. Only where the mesh is too coarse to say what the metric is
+        between its points, the refinement is limited, see `RemeshOptions`.
     options : RemeshOptions, optional
     geometry : Mesh, optional
         The mesh whose facets are the shape of the domain, `mesh` by default. Loops give the
@@ -105,8 +107,9 @@ def remesh(
     with np.errstate(over="ignore", under="ignore"):
         metric /= scale * scale  # a copy, as check_metric returns it
     check_sizes(mesh, metric, scale)
-    check_demand(mesh, metric, scale, options)
-    raw = call(mesh, metric, geometry, project, options, scale)
+    ramp = approached(mesh, metric, scale, options.max_refinement)
+    check_demand(mesh, ramp.metric, scale, options)
+    raw = noted(call(mesh, ramp.metric, geometry, project, options, scale), ramp)
     points, metric = raw["points"], raw["metric"]
     points /= scale
     metric *= scale * scale
@@ -122,6 +125,8 @@ def remesh(
         names={**mesh.names, **geometry.names},
         **ridges,
     )
+    if ramp.is_limited.any():
+        metric = carried(mesh, check_metric(M), new)
     is_curved = mesh.dim == 2 or raw["counts"]["curved"] > 0
     shape = smooth_shape(geometry, options) if is_curved else None
     report = report_of(

@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from .consistency import ConsistencyOptions
+from .metric.refinement import check_refinement
 
 Callback = Callable[[str, float], object]
 """``callback(phase, fraction)``, called now and then; an exception it raises ends the call."""
@@ -35,6 +36,13 @@ class RemeshOptions:
         Bytes. A metric whose mesh, as far as the budgets above let it grow, is estimated to take
         more is refused before anything is made. None is what the machine, the container and the
         limits of the process have left; ``math.inf`` refuses nothing.
+    max_refinement : float, "auto" or None
+        By what factor sizes may shrink against those of the given mesh in one call. "auto" limits
+        only what the mesh cannot resolve: edges that the metric divides into more than 25 times
+        as many pieces as those of a neighbour, as thin layers do on a coarse mesh, where the
+        metric between the points is a guess. Then ``report.converged`` is False, and the metric
+        is to be evaluated on the new mesh and remeshed again: some passes later the limit acts no
+        more. None takes every metric as it is.
     frozen_tags : sequence of int
         Facets with these tags are kept as they are.
     ridge_angle : float
@@ -65,6 +73,7 @@ class RemeshOptions:
     max_vertices: int | None = None
     max_seconds: float | None = None
     max_memory: float | None = None
+    max_refinement: float | Literal["auto"] | None = "auto"
     frozen_tags: Sequence[int] = ()
     ridge_angle: float = 45.0
     hausdorff_number: float = 0.1
@@ -88,6 +97,8 @@ class RemeshOptions:
             raise TypeError(f"max_memory must be a number of bytes, got {self.max_memory!r}")
         if self.max_memory is not None and not self.max_memory > 0:
             raise ValueError(f"max_memory must be positive, got {self.max_memory}")
+        if self.max_refinement is not None:
+            check_refinement("max_refinement", self.max_refinement)
         if not 0 < self.ridge_angle <= 180:
             raise ValueError(f"ridge_angle must be in (0, 180] degrees, got {self.ridge_angle}")
         if not 0 < self.hausdorff_number <= 1:

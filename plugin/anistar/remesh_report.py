@@ -21,7 +21,11 @@ class RemeshReport:
         The run ended by itself, not by a budget; with ``until_consistent`` also: every star
         agrees.
     stop_reason : str
-        ``finished``, ``max_vertices`` or ``max_seconds``.
+        ``finished``, ``max_vertices``, ``max_seconds`` or ``max_refinement``.
+    limited : dict of str to float
+        Where `max_refinement` acted: ``share`` of the points of the given mesh, and ``excess``,
+        the factor by which the sizes asked for were below the bound at most (1: nowhere). The
+        figures of this report are then in the metric with the limit.
     n_points, n_cells : int
         Size of the new mesh.
     statistics : dict
@@ -67,6 +71,7 @@ class RemeshReport:
 
     converged: bool
     stop_reason: str
+    limited: dict[str, float]
     n_points: int
     n_cells: int
     statistics: dict[str, Any]
@@ -108,6 +113,7 @@ def report_of(
         converged=raw["stop_reason"] == "finished"
         and raw["consistency"]["stop_reason"] in ("", "consistent"),
         stop_reason=raw["stop_reason"],
+        limited=raw["limited"],
         n_points=new.n_points,
         n_cells=new.n_cells,
         statistics=raw["statistics"],

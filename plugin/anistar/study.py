@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 from collections.abc import Callable, Sequence
@@ -19,6 +20,7 @@ from .mesh import Mesh
 from .metric.kernels.elementary import log, power
 from .remesh import remesh
 from .report import as_builtin, attributes, write_json, write_text
+from .settling import Settled
 from .topology import cell_volumes
 
 BASELINES = ("uniform", "isotropic")
@@ -127,6 +129,8 @@ def convergence_study(
     exact: ExactFunction | None = None,
     field: str | None = None,
     repeats: int = 2,
+    max_coarsening: float | None = 2.0,
+    settled: Settled | None = None,
     options: AdaptOptions | None = None,
     geometry: Mesh | None = None,
     baselines: Sequence[str] = (),
@@ -150,6 +154,11 @@ def convergence_study(
         Name of the scalar field that `exact` belongs to; may be left out if there is only one.
     repeats : int
         Adaptations at each complexity, so that the mesh settles before it is measured.
+    max_coarsening : float or None
+        By what factor sizes may at most grow from one mesh to the next, see `LoopOptions`.
+    settled : Settled, optional
+        What ends the adaptations at one complexity early; by default all of them are made, so
+        that every row of the table has had as many.
     options : AdaptOptions, optional
         Options of each adaptation.
     geometry : Mesh, optional
@@ -165,8 +174,8 @@ def convergence_study(
     Raises
     ------
     ValueError
-        If there are fewer than two complexities, not exactly one of `error` and `exact`, or an
-        unknown baseline.
+        If there are fewer than two complexities or one twice in a row, not exactly one of
+        `error` and `exact`, or an unknown baseline.
     """
     if (error is None) == (exact is None):
         raise ValueError("give exactly one of error and exact")
@@ -177,8 +186,14 @@ def convergence_study(
 
     def adapted(chosen: AdaptOptions) -> tuple[Step, ...]:
         repeated = [value for value in complexities for _ in range(repeats)]
-        loop = LoopOptions(adapt=chosen, complexities=tuple(repeated), max_iterations=len(repeated))
-        return adapt_loop(solve, mesh, loop, geometry=geometry).steps[repeats::repeats]
+        loop = LoopOptions(
+            adapt=chosen,
+            complexities=tuple(repeated),
+            max_iterations=len(repeated),
+            max_coarsening=max_coarsening,
+            settled=settled,
+        )
+        return _last_of_each(adapt_loop(solve, mesh, loop, geometry=geometry).steps, repeats)
 
     steps = adapted(options)
     others: dict[str, tuple[StudyRow, ...]] = {}
@@ -195,11 +210,25 @@ def convergence_study(
     return Study(table, observed_order(counts, errors, mesh.dim), steps, others)
 
 
+def _last_of_each(steps: Sequence[Step], repeats: int) -> tuple[Step, ...]:
+    """Return the last step at each complexity: after `repeats`, or where they ended early."""
+    found, made = [], 0
+    for step in steps[1:]:
+        made += 1
+        if made == repeats or step.settled:
+            found.append(step)
+            made = 0
+    return tuple(found)
+
+
 def _check(complexities: Sequence[float], repeats: int, baselines: Sequence[str]) -> None:
     if len(complexities) < 2:
         raise ValueError(f"a study needs at least 2 complexities, not {len(complexities)}")
     if repeats < 1:
         raise ValueError(f"repeats must be at least 1, not {repeats}")
+    for i, (before, after) in enumerate(itertools.pairwise(complexities)):
+        if before == after:
+            raise ValueError(f"complexities[{i + 1}] repeats {after:g}: that is what repeats does")
     unknown = sorted(set(baselines) - set(BASELINES))
     if unknown:
         raise ValueError(f"baselines are {', '.join(BASELINES)}, not {unknown[0]!r}")

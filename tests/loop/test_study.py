@@ -5,6 +5,7 @@ import pytest
 from meshes import cube, square
 
 from anistar.errors import MeshingError
+from anistar.settling import Settled
 from anistar.study import convergence_study, observed_order
 from anistar.validation import validate
 
@@ -26,6 +27,23 @@ def test_interpolation_converges_at_second_order():
     for row, step in zip(study.table, study.steps, strict=True):
         assert validate(step.mesh) == []
         assert row.points == step.mesh.n_points
+
+
+def test_repeats_that_change_nothing_are_left_out_of_a_study():
+    calls = []
+
+    def counted(mesh, fields):
+        calls.append(mesh.n_points)
+        return interpolate(mesh, fields)
+
+    options = {"exact": layer, "repeats": 6}
+    near = Settled(points=0.1, error=0.5)
+    study = convergence_study(counted, square(12), [200, 400], settled=near, **options)
+    assert [row.complexity for row in study.table] == [200, 400]
+    assert [step.complexity for step in study.steps] == [200, 400]
+    assert study.steps[0].settled
+    assert len(calls) < 11
+    assert study.order == pytest.approx(2.0, abs=0.5)
 
 
 def test_a_complexity_that_no_machine_has_room_for_is_refused_before_the_first_solve():

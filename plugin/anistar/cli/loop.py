@@ -23,6 +23,7 @@ from .options import (
     add_transfer_method_option,
     numbers,
 )
+from .settling import add_settling_options, settling_options
 
 SUMMARY = "solve and adapt in turn, with a solver that is a command"
 EXAMPLE = (
@@ -62,7 +63,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     earlier.add_argument(
         "--force", action="store_true", help="replace the run that the folder holds"
     )
-    add_metric_options(parser, without=("target_error",))
+    add_metric_options(parser, without=("target_error", "max_coarsening"))
+    add_settling_options(parser, is_loop=True)
     add_remesh_options(parser)
     add_transfer_method_option(parser)
 
@@ -74,6 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         complexities=arguments.complexities,
         target_error=arguments.stop_at_error,
         max_iterations=arguments.max_iterations,
+        **settling_options(arguments),
     )
     mesh, _ = read(arguments.input)
     folder = RunFolder(arguments.output, _settings(arguments, options))
@@ -129,7 +132,12 @@ def _looped(
 def _settings(arguments: argparse.Namespace, options: LoopOptions) -> dict[str, Any]:
     """Return what every step depends on; the targets still to come may change on the way."""
     adapt = as_builtin(options.adapt)
-    return {"command": arguments.solver, "format": arguments.format, "options": adapt}
+    return {
+        "command": arguments.solver,
+        "format": arguments.format,
+        "options": adapt,
+        "max_coarsening": options.max_coarsening,
+    }
 
 
 def _show(loop: Loop) -> None:

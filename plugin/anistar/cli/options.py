@@ -82,6 +82,10 @@ _METRIC: dict[str, tuple[Any, str]] = {
         _switch,
         "apply the largest anisotropy to the Hessians as well: on or off",
     ),
+    "max_coarsening": (
+        _number_or_off("max_coarsening"),
+        "growth of sizes against those of the mesh at most, or off (default)",
+    ),
     "gradation_factor": (
         _number_or_off("gradation_factor"),
         "growth of sizes from edge to edge, or off, or auto (Mmg: -hgrad)",
@@ -127,6 +131,11 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "max_vertices": (int, "stop at this number of vertices"),
     "max_seconds": (float, "stop after this time"),
     "max_memory": (float, "refuse what takes more bytes; inf: nothing (default: what is free)"),
+    "max_refinement": (
+        _number_or_off("max_refinement"),
+        "factor by which sizes shrink against those of the mesh at most, or off, or auto "
+        "(default): only where the mesh cannot resolve the metric",
+    ),
     "frozen_tags": (_integers, "facet tags that are kept as they are, comma-separated"),
     "agreement": (_agreement, "move vertices until the stars agree: auto (in 3D: not), on or off"),
     "until_consistent": (

@@ -22,6 +22,7 @@ from .options import (
     add_transfer_method_option,
     numbers,
 )
+from .settling import add_settling_options, settling_options
 
 SUMMARY = "measure how the error falls on adapted meshes"
 EXAMPLE = (
@@ -51,7 +52,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--csv", metavar="FILE", help="write the table")
     parser.add_argument("--picture", metavar="FILE", help="draw the error against the points")
     parser.add_argument("--force", action="store_true", help="replace these files if they exist")
-    add_metric_options(parser)
+    add_metric_options(parser, without=("max_coarsening",))
+    add_settling_options(parser, is_loop=False)
     add_remesh_options(parser)
     add_transfer_method_option(parser)
 
@@ -78,6 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
             arguments.complexities,
             exact=exact,
             repeats=arguments.repeats,
+            **settling_options(arguments),
             options=adapt_options(arguments),
             baselines=arguments.baselines,
         )

@@ -1,0 +1,82 @@
+"""Metrics that are much finer than the mesh that carries them are approached in steps."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .fields import Field
+from .mesh import Mesh
+from .metric import MetricError, exp_metric, log_metric
+from .metric.refinement import Refinement, refinement_limited
+from .transfer import TransferOptions, transfer
+
+Floats = NDArray[np.float64]
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class _Scaled:
+    """The mesh in the coordinates of the core."""
+
+    points: Floats
+    cells: NDArray[np.int32]
+
+
+def approached(mesh: Mesh, metric: Floats, scale: float, ratio: float | str | None) -> Refinement:
+    """Limit a metric to what one remeshing may refine, and say so where that changes it.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    metric : (n, d, d) float64
+        Positive definite, in coordinates that are `scale` times those of the mesh.
+    scale : float
+    ratio : float, "auto" or None
+        See `RemeshOptions.max_refinement`.
+
+    Returns
+    -------
+    Refinement
+        Of the same metric where there is no limit, or where cells are so flat that none can be
+        measured.
+    """
+    nothing = Refinement(metric=metric, is_limited=np.zeros(len(metric), dtype=bool), excess=1.0)
+    if ratio is None:
+        return nothing
+    try:
+        found = refinement_limited(_Scaled(mesh.points * scale, mesh.cells), metric, ratio)
+    except MetricError:  # the cells, not the metric, which was checked
+        return nothing
+    if found.is_limited.any():
+        logger.warning(
+            "the metric asks for edges up to %.3g times shorter than the mesh that carries it can "
+            "resolve, at %.3g %% of its points: what was made is between the two. Remesh it "
+            "again, with the metric evaluated at its points; max_refinement sets the limit",
+            found.excess,
+            100.0 * found.is_limited.mean(),
+        )
+    return found
+
+
+def noted(raw: dict[str, Any], ramp: Refinement) -> dict[str, Any]:
+    """Return what the core returned with a note where the metric was limited."""
+    is_limited = bool(ramp.is_limited.any())
+    is_reason = is_limited and raw["stop_reason"] == "finished"
+    return {
+        **raw,
+        "limited": {"share": float(ramp.is_limited.mean()), "excess": ramp.excess},
+        "stop_reason": "max_refinement" if is_reason else raw["stop_reason"],
+    }
+
+
+def carried(mesh: Mesh, metric: Floats, new: Mesh) -> Floats:
+    """Interpolate a metric (n, d, d) at the points of a new mesh, as the core does."""
+    logarithm = {"metric": Field(log_metric(metric))}
+    options = TransferOptions(outside="nearest")
+    return exp_metric(transfer(mesh, logarithm, new, options).fields["metric"].values)
