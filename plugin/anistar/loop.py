@@ -30,6 +30,7 @@ from .mesh import Mesh
 from .options import require
 from .projection import Project
 from .report import Reportable, as_builtin
+from .telling import telling_once
 
 Fields = Mapping[str, Field | ArrayLike]
 Solve = Callable[[Mesh, dict[str, Any]], Fields]
@@ -124,6 +125,7 @@ class _State(NamedTuple):
     report: AdaptReport | None
 
 
+@telling_once()
 def adapt_loop(
     solve: Solve,
     mesh: Mesh,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,11 +12,10 @@ from .fields import Field
 from .mesh import Mesh
 from .metric import MetricError, exp_metric, log_metric
 from .metric.refinement import Refinement, refinement_limited
+from .telling import tell
 from .transfer import TransferOptions, transfer
 
 Floats = NDArray[np.float64]
-
-logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -54,14 +52,16 @@ def approached(mesh: Mesh, metric: Floats, scale: float, ratio: float | str | No
     except MetricError:  # the cells, not the metric, which was checked
         return nothing
     if found.is_limited.any():
-        logger.warning(
-            "the metric asks for edges up to %.3g times shorter than the mesh that carries it can "
-            "resolve, at %.3g %% of its points: what was made is between the two. Remesh it "
-            "again, with the metric evaluated at its points; max_refinement sets the limit",
-            found.excess,
-            100.0 * found.is_limited.mean(),
-        )
+        tell([_said(found)])
     return found
+
+
+def _said(found: Refinement) -> str:
+    return (
+        f"max_refinement: the metric asks for edges up to {found.excess:.3g} times shorter than "
+        f"the mesh that carries it can resolve, at {found.is_limited.mean():.3g} of its points; "
+        "what was made is between the two: remesh it again, with the metric evaluated at its points"
+    )
 
 
 def noted(raw: dict[str, Any], ramp: Refinement) -> dict[str, Any]:

@@ -24,6 +24,7 @@ from .projection import Project
 from .remesh import remesh
 from .report import attributes
 from .settling import check_max_coarsening
+from .telling import telling_once
 from .transfer import TransferOptions, transfer
 
 Fields = dict[str, Any]
@@ -130,6 +131,7 @@ class Unsteady:
         return {"time": self.last.time, "windows": [window.as_dict() for window in self.windows]}
 
 
+@telling_once()
 def unsteady_loop(
     advance: Advance,
     mesh: Mesh,
