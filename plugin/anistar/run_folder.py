@@ -148,13 +148,11 @@ class RunFolder:
         return list(self.steps)
 
     def _require_same(self, settings: Mapping[str, Any]) -> None:
-        for name in sorted(settings.keys() | self.settings.keys()):
-            before, now = settings.get(name), self.settings.get(name)
-            if before != now:
-                raise ValueError(
-                    f"the run in {self.folder} has {name} = {before!r}, not {now!r}: "
-                    "resume with the same, or choose another folder"
-                )
+        for name, before, now in _differences(settings, self.settings):
+            raise ValueError(
+                f"the run in {self.folder} has {name} = {before!r}, not {now!r}: "
+                "resume with the same, or choose another folder"
+            )
 
     def _step(self, number: int, said: Mapping[str, Any]) -> Step:
         mesh, fields = read(member(self.folder / SERIES, number))
@@ -173,6 +171,16 @@ class RunFolder:
 
     def _report(self, loop: Loop) -> None:
         write_json(self.folder / REPORT, {"settings": self.settings, **loop.as_dict()})
+
+
+def _differences(before: Any, now: Any, name: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Give the name of each setting that differs, as ``options.metric.p``, and both values."""
+    if isinstance(before, Mapping) and isinstance(now, Mapping):
+        for key in sorted(before.keys() | now.keys()):
+            inner = f"{name}.{key}" if name else key
+            yield from _differences(before.get(key), now.get(key), inner)
+    elif before != now:
+        yield name, before, now
 
 
 @contextmanager

@@ -117,7 +117,8 @@ def test_resuming_with_other_settings_is_refused(folder, capsys):
     assert main(arguments("run")) == 0
     before = contents("run")
     assert main(arguments("run", "--resume", "--h-max", "0.1")) == 2
-    assert "the run in run has options" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "the run in run has options.metric.h_max = None, not 0.1: resume with the same" in said
     assert contents("run") == before
 
 
