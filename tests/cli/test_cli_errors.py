@@ -230,7 +230,7 @@ def test_what_an_interrupted_loop_finished_is_kept(folder, capsys, monkeypatch):
 
     (folder / "solver.py").write_text(SECOND_CALL_FAILS)
     command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
-    monkeypatch.setattr("anistar.loop.adapt", interrupted)
+    monkeypatch.setattr("anistar.loop._adapted", interrupted)
     assert run("loop in.vtu --complexities 50 -o run", "--command", command) == 1
     assert capsys.readouterr().err == "anistar loop: interrupted\n"
     report = json.loads((folder / "run" / "report.json").read_text())
