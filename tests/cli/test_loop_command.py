@@ -1,5 +1,6 @@
 """What `anistar loop` takes from a solver, and what it leaves alone in its folder."""
 
+import json
 import os
 import subprocess
 from pathlib import Path
@@ -63,6 +64,22 @@ def test_a_solver_may_number_points_and_cells_anew(folder, monkeypatch, kind):
         assert anistar.validate(mesh, square(6)) == []
         assert np.abs(fields["u"].values - front(mesh.points)).max() < 1e-12
         assert np.abs(fields["mean"].values - front(centres)).max() < 1e-12
+
+
+@pytest.mark.parametrize("kind", ["mesh", "vtu"])
+def test_means_of_cells_drive_the_loop(folder, monkeypatch, capsys, kind):
+    def solve(mesh):
+        other = mesh if kind == "mesh" else renumbered(mesh)
+        return other, {"c": Field(front(other.points[other.cells].mean(axis=1)), "cells")}
+
+    solver(monkeypatch, solve)
+    assert loop("--format", kind, "--field", "c", "--complexities", "80,160", "--json") == 0
+    errors = [step["error"]["c"] for step in json.loads(capsys.readouterr().out)["steps"]]
+    assert errors[2] < errors[0] / 4
+    mesh, fields = anistar.read("run/series_002.vtu")
+    assert anistar.validate(mesh, square(6)) == []
+    assert fields["c"].on == "cells"
+    assert np.array_equal(fields["c"].values, front(mesh.points[mesh.cells].mean(axis=1)))
 
 
 def test_a_solver_that_moves_a_point_is_refused_by_file_and_point(folder, monkeypatch, capsys):
