@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from .demo_result import REPORT, Demo, DemoRow, order_of
 from .interpolation_error import l2_error
-from .loop import LoopOptions, Step, adapt_loop
+from .loop import Step, adapt_loop
+from .loop_options import LoopOptions
 from .mesh import Mesh
 from .remesh import remesh
 from .report import write_json
