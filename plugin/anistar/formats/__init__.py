@@ -107,8 +107,7 @@ def read_with_report(path: PathLike) -> tuple[Mesh, dict[str, Field], ReadReport
     if suffix_of(path) not in _READERS:
         raise FormatError(
             f"cannot read {path}: files {path.suffix or 'without suffix'} are not read here; "
-            f"convert it to VTU or Gmsh, for example by `meshio convert {path.name} "
-            f"{path.stem}.vtu`"
+            "convert it to VTU or Gmsh first, for example with meshio or ParaView"
         )
     return assembled(_READERS[suffix_of(path)](path), path)
 

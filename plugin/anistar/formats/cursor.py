@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+Order = Literal["<", ">"]
 _BLANKS = b" \t\r\n"
 
 
@@ -20,7 +21,7 @@ class Cursor:
         Byte order of the numbers.
     """
 
-    def __init__(self, data: bytes, order: str = "<") -> None:
+    def __init__(self, data: bytes, order: Order = "<") -> None:
         self.data = data
         self.order = order
         self.at = 0
@@ -33,7 +34,7 @@ class Cursor:
         ValueError
             If the file ends before.
         """
-        dtype = kind if isinstance(kind, np.dtype) else np.dtype(kind).newbyteorder(self.order)
+        dtype = np.dtype(kind).newbyteorder(self.order)
         end = self.at + dtype.itemsize * count
         if count < 0 or end > len(self.data):
             raise ValueError(

@@ -104,9 +104,7 @@ class _Binary:
 
     def _read_points(self, result: Container) -> None:
         layout = np.dtype([("x", self._real, (result.dim,)), ("r", self._index)])
-        rows = self._cursor.take(
-            layout.newbyteorder(self._cursor.order), self._cursor.integer(self._index)
-        )
+        rows = self._cursor.take(layout, self._cursor.integer(self._index))
         result.points, result.point_refs = rows["x"].astype(np.float64), rows["r"].astype(np.int64)
 
     def _read_named(self, result: Container, keyword: str) -> None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cursor import Cursor
+from .cursor import Cursor, Order
 from .raw import Array
 from .rows import leading_rows
 from .text_rows import integers, parsed
@@ -32,7 +32,7 @@ class Header:
     version: str
     is_text: bool
     size: int
-    order: str
+    order: Order
     end: int
 
     @classmethod
@@ -163,7 +163,7 @@ class BinaryStream:
     def table(self, count: int, width: int) -> tuple[Array, Array]:
         """Return rows of an integer and `width` reals: the integers, and the reals."""
         layout = np.dtype([("number", "i4"), ("values", "f8", (width,))])
-        rows = self._cursor.take(layout.newbyteorder(self._cursor.order), count)
+        rows = self._cursor.take(layout, count)
         return rows["number"].astype(np.int64), rows["values"].astype(np.float64)
 
     def rest(self) -> str:

@@ -16,6 +16,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from .cursor import Order
 from .raw import Array
 from .text_rows import parsed
 from .xml_tree import attribute, count
@@ -26,7 +27,7 @@ _TYPES = {
     for bits in sizes
 }
 _TYPES |= {f"U{name}": kind.replace("i", "u") for name, kind in _TYPES.items() if name[0] == "I"}
-_ORDERS = {"LittleEndian": "<", "BigEndian": ">"}
+_ORDERS: dict[str, Order] = {"LittleEndian": "<", "BigEndian": ">"}
 _COMPRESSORS = ("vtkZLibDataCompressor", "vtkLZMADataCompressor")
 # The numbers of a mesh take no more than this many times the bytes of the file, compressed or not
 # (several arrays may be read at one place): constant fields shrink a thousandfold, but points and
@@ -53,7 +54,7 @@ class Encoding:
         Bytes that all arrays may still take.
     """
 
-    order: str
+    order: Order
     header: str
     compressor: str | None
     appended: bytes

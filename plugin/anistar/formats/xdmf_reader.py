@@ -90,8 +90,8 @@ def _mesh(data: bytes) -> RawMesh:
     for kind in dict.fromkeys(kinds):
         runs = [i for i, other in enumerate(kinds) if other == kind]
         members = np.concatenate([np.arange(starts[i], starts[i + 1]) for i in runs])
-        data = {name: values[members] for name, values in on_cells.items()}
-        blocks.append(Block(kind, np.concatenate([rows[i] for i in runs]), None, data))
+        of_kind = {name: values[members] for name, values in on_cells.items()}
+        blocks.append(Block(kind, np.concatenate([rows[i] for i in runs]), None, of_kind))
     return RawMesh(points, blocks, point_data=on_points, six="xdmf")
 
 
