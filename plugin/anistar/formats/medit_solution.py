@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..metric.tensor_orders import from_components
 from .gmf_container import Container, columns_of
 from .notes import fields_of
@@ -62,7 +64,8 @@ class MeditSolution:
         if code == _SCALAR:
             return values[:, 0].copy()
         if code == _TENSOR:
-            return from_components(values, "medit")
+            with np.errstate(invalid="ignore"):  # of an infinite entry from itself
+                return from_components(values, "medit")
         if code == _FULL_TENSOR:
             return values.reshape(-1, self.dim, self.dim).copy()
         return values.copy()

@@ -62,6 +62,9 @@ def blocks_of(
     ValueError
         If the cells do not fill the connectivity, or one has not as many points as its type.
     """
+    for name, values in (("types", types), ("offsets", ends), ("points", connectivity)):
+        if values.dtype.kind not in "iu" or values.ndim != 1:
+            raise ValueError(f"the {name} of its cells are no integers")
     if len(ends) != len(types):
         raise ValueError(f"it has {len(types)} types of cells, but {len(ends)} offsets")
     for name, values in data.items():

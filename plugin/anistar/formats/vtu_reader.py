@@ -101,9 +101,7 @@ def _piece(piece: Element, encoding: Encoding, warnings: list[str]) -> RawMesh:
         _data(piece, tag, length, encoding, warnings)
         for tag, length in (("PointData", n_points), ("CellData", n_cells))
     )
-    blocks = blocks_of(
-        cells["types"], cells["offsets"], cells["connectivity"].astype(np.int64), on_cells
-    )
+    blocks = blocks_of(cells["types"], cells["offsets"], cells["connectivity"], on_cells)
     return RawMesh(points.astype(np.float64), blocks, point_data=on_points)
 
 
