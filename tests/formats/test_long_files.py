@@ -140,3 +140,20 @@ def test_blocks_of_one_kind_are_joined(tmp_path):
     assert {block.kind: len(block.rows) for block in raw.blocks} == {"triangle": n, "vertex": n}
     assert len(raw.blocks) == 2
     assert formats.read(path)[0].n_cells == n
+
+
+@pytest.mark.parametrize(
+    ("components", "n_sections"), [(10**9, 1), (1, 3000)], ids=["wide", "many"]
+)
+def test_data_without_rows_take_no_memory(tmp_path, components, n_sections):
+    n = 4000
+    nodes = "".join(f"{i + 4} 0 0 0\n" for i in range(n))
+    mesh = MESH.replace("$Nodes\n3\n", f"$Nodes\n{n + 3}\n")
+    mesh = mesh.replace("$EndNodes", f"{nodes}$EndNodes")
+    data = "".join(
+        f'$NodeData\n1\n"u{i}"\n1\n0\n3\n0\n{components}\n0\n$EndNodeData\n'
+        for i in range(n_sections)
+    )
+    path = tmp_path / "m.msh"
+    said = read(path, GMSH + mesh + data)
+    assert said == f"cannot read {path}: its arrays take more than 100 times its length"

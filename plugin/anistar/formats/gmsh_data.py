@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import math
 from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 
+from .allowance import Allowance
 from .gmsh_elements import Elements
 from .gmsh_streams import Stream
 from .notes import labels_of, note_of
@@ -96,19 +98,25 @@ def _integer(line: str) -> int:
     return int(line)
 
 
-def add_node_data(raw: RawMesh, nodes: Numbering, data: Data) -> None:
+def add_node_data(raw: RawMesh, nodes: Numbering, data: Data, allowance: Allowance) -> None:
     """Give values to the points; those that are left out get NaN."""
     Numbering(f"node of {data.name!r}", data.numbers)
-    full = np.full((len(raw.points), *data.values.shape[1:]), np.nan)
+    full = _unset(len(raw.points), data, allowance)
     full[nodes.rows(data.numbers)] = data.values
     raw.point_data[data.name] = full
 
 
-def add_element_data(raw: RawMesh, runs: list[Elements], data: Data) -> None:
+def _unset(n_rows: int, data: Data, allowance: Allowance) -> Array:
+    shape = (n_rows, *data.values.shape[1:])
+    allowance.spend(np.dtype(np.float64).itemsize * math.prod(shape))
+    return np.full(shape, np.nan)
+
+
+def add_element_data(raw: RawMesh, runs: list[Elements], data: Data, allowance: Allowance) -> None:
     """Spread values over the blocks; elements that are left out get NaN."""
     Numbering(f"element of {data.name!r}", data.numbers)
     own, row_of = np.unique(np.concatenate([run.numbers for run in runs]), return_inverse=True)
-    full = np.full((len(own), *data.values.shape[1:]), np.nan)
+    full = _unset(len(own), data, allowance)
     full[Numbering("element", own).rows(data.numbers)] = data.values
     starts = np.cumsum([0, *(len(run.numbers) for run in runs)])
     for block, start in zip(raw.blocks, starts, strict=False):

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from . import gmsh2, gmsh4
+from .allowance import Allowance
 from .gmsh_data import (
     Data,
     Note,
@@ -46,6 +47,7 @@ _WITHOUT_CONTENT = (
 class _Content:
     """What was read so far; `runs` have the entity of each in version 4."""
 
+    allowance: Allowance
     nodes: tuple[Array, Array] | None = None
     runs: list[Elements] | None = None
     placed: list[tuple[tuple[int, int], Elements]] | None = None
@@ -72,7 +74,7 @@ def _mesh(data: bytes) -> RawMesh:
     header = Header.of(data)
     if header.version not in _VERSIONS:
         raise ValueError(f"version {header.version} is not known, only {', '.join(_VERSIONS)}")
-    content, seen = _Content(), set()
+    content, seen = _Content(Allowance(len(data))), set()
     for name, stream in sections(data, header):
         if name in seen and name not in _MANY:
             raise ValueError(f"it has two sections {name}: only one can be meant")
@@ -133,7 +135,7 @@ def _raw(content: _Content) -> RawMesh:
     raw.names, raw.labels = content.names, content.note.labels if content.note else set()
     check_complete(content.note, content.data)
     for data in last_steps(content.data.get("NodeData", []), raw.warnings):
-        add_node_data(raw, nodes, data)
+        add_node_data(raw, nodes, data, content.allowance)
     for data in last_steps(content.data.get("ElementData", []), raw.warnings):
-        add_element_data(raw, runs, data)
+        add_element_data(raw, runs, data, content.allowance)
     return raw

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .allowance import Allowance
 from .numbering import Numbering
 from .raw import KIND_DIM, Array, Block, RawMesh
 from .reading import reading
@@ -42,27 +43,19 @@ _PARAMETERS = {
 }
 _GENERATED = 3
 """First, last and step of a set that is generated."""
-_LARGEST_EXPANSION = 100
-"""Members of sets for each letter of a file: sets may be made of ranges and of other sets."""
 
 
 @dataclass
 class _Content:
-    """What was read so far."""
+    """What was read so far; sets may be made of ranges and of other sets, which takes memory."""
 
+    allowance: Allowance
     nodes: list[Array] = field(default_factory=list)
     kinds: list[str] = field(default_factory=list)
     elements: list[Array] = field(default_factory=list)
     of_elements: dict[str, list[Array]] = field(default_factory=dict)
     sets: dict[str, list[Array]] = field(default_factory=dict)
     n_elements: int = 0
-    allowance: int = 0  # members that sets may still have
-
-    def spend(self, n_members: int) -> None:
-        """Count what sets hold or are made of; raise ValueError when it is too much."""
-        self.allowance -= n_members
-        if self.allowance < 0:
-            raise ValueError("its sets have more members than a file of its length can mean")
 
 
 def read(path: Path) -> RawMesh:
@@ -78,7 +71,7 @@ def read(path: Path) -> RawMesh:
 
 
 def _mesh(text: str) -> RawMesh:
-    content = _Content(allowance=_LARGEST_EXPANSION * len(text))
+    content = _Content(Allowance(len(text)))
     clean = _COMMENT.sub("", text)
     found = list(_KEYWORD.finditer(clean))
     if not found or clean[: found[0].start()].strip():
@@ -113,7 +106,7 @@ def _read(content: _Content, keyword: str, parameters: dict[str, str], body: str
     elif keyword == "ELSET":
         name = parameters.get("ELSET", "")
         members = _members(content, body, is_generated="GENERATE" in parameters)
-        content.spend(len(members))
+        content.allowance.spend(members.nbytes)
         content.sets.setdefault(name, []).append(members)
 
 
@@ -152,7 +145,7 @@ def _members(content: _Content, body: str, *, is_generated: bool) -> Array:
             if known is None:
                 raise ValueError(f"a set is made of {word[:40]!r}, which is not given")
             parts += known
-        content.spend(sum(map(len, parts)))
+        content.allowance.spend(sum(part.nbytes for part in parts))
         # what is in a set twice does not grow when that is put into others
         return np.unique(np.concatenate(parts))
     members = _integers("ELSET", body)

@@ -16,6 +16,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from .allowance import Allowance
 from .cursor import Order
 from .raw import Array
 from .text_rows import parsed
@@ -29,11 +30,6 @@ _TYPES = {
 _TYPES |= {f"U{name}": kind.replace("i", "u") for name, kind in _TYPES.items() if name[0] == "I"}
 _ORDERS: dict[str, Order] = {"LittleEndian": "<", "BigEndian": ">"}
 _COMPRESSORS = ("vtkZLibDataCompressor", "vtkLZMADataCompressor")
-# The numbers of a mesh take no more than this many times the bytes of the file, compressed or not
-# (several arrays may be read at one place): constant fields shrink a thousandfold, but points and
-# cells hardly tenfold.
-_LARGEST_EXPANSION = 100
-_ALWAYS_ALLOWED = 64 * 2**20
 _LZMA_MEMORY = 256 * 2**20
 
 
@@ -50,8 +46,8 @@ class Encoding:
     appended : bytes
         What follows the underscore in `AppendedData`.
     appended_is_raw : bool
-    allowance : int
-        Bytes that all arrays may still take.
+    allowance : Allowance
+        For all arrays: compressed ones are longer than they look, and several may be at one place.
     """
 
     order: Order
@@ -59,7 +55,7 @@ class Encoding:
     compressor: str | None
     appended: bytes
     appended_is_raw: bool
-    allowance: int
+    allowance: Allowance
 
     @classmethod
     def of(cls, root: Element, appended: bytes, *, raw: bool, n_bytes: int) -> Encoding:
@@ -73,14 +69,8 @@ class Encoding:
             raise ValueError(
                 f"it is compressed by {compressor}: save it with {_COMPRESSORS[0]} or without"
             )
-        allowance = max(_ALWAYS_ALLOWED, _LARGEST_EXPANSION * n_bytes)
+        allowance = Allowance(n_bytes)
         return cls(_ORDERS[order], _TYPES[header], compressor, appended, raw, allowance)
-
-    def spend(self, n_bytes: int) -> None:
-        """Count what an array takes; raise ValueError when it is too much for the file."""
-        self.allowance -= n_bytes
-        if self.allowance < 0 or n_bytes < 0:
-            raise ValueError(f"its arrays take more than {_LARGEST_EXPANSION} times its length")
 
 
 def numbers_of(element: Element, encoding: Encoding) -> Array:
@@ -154,7 +144,7 @@ def _payload(source: _Bytes, at: int, encoding: Encoding) -> tuple[bytes, int]:
     first = int(np.frombuffer(source.read(at, item.itemsize), item)[0])
     if encoding.compressor is not None:
         return _compressed(source, at, first, encoding)
-    encoding.spend(first)
+    encoding.allowance.spend(first)
     # some writers encode the header by itself
     if source.is_padded(at, item.itemsize) or first == 0:
         start = at + source.length(item.itemsize)
@@ -171,7 +161,7 @@ def _compressed(source: _Bytes, at: int, n_blocks: int, encoding: Encoding) -> t
     total = n_blocks * length - (length - last if last else 0)
     if n_blocks == 0:
         total = 0
-    encoding.spend(total)
+    encoding.allowance.spend(total)
     start = at + source.length(n_header)
     packed = source.read(start, sum(sizes))
     ends = np.cumsum([0, *sizes]).tolist()
