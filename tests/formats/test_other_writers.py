@@ -117,6 +117,10 @@ def test_pieces_are_put_together(tmp_path):
     assert np.array_equal(got.cells[mesh.n_cells :], mesh.cells + mesh.n_points)
     assert fields["u"].values.tolist() == [*mesh.points[:, 0], *mesh.points[:, 1]]
     assert validate(got) == []
+    path.write_text(text[:end] + piece.replace('Name="u"', 'Name="w"') + text[end:])
+    _, fields, report = formats.read_with_report(path)
+    assert fields == {}
+    assert "the array 'u' is not in all pieces, and not read" in report.warnings
 
 
 @pytest.mark.parametrize("make", MAKERS)

@@ -307,3 +307,33 @@ def test_arrays_of_any_width_become_scalars(tmp_path):
     fields = formats.read(path)[1]
     assert list(fields) == [f"Y_{i}" for i in range(5)]
     assert fields["Y_3"].values[2] == 13
+
+
+def test_columns_that_are_called_as_another_array_are_refused(tmp_path):
+    mesh = cube(1)
+    data = {"Y": np.arange(40.0).reshape(8, 5), "Y_3": np.ones(8)}
+    path = written(tmp_path / "m.vtu", mesh.points, [("tetra", mesh.cells)], point_data=data)
+    with pytest.raises(formats.FormatError, match=r"m\.vtu: it has two fields 'Y_3'"):
+        formats.read(path)
+
+
+def test_the_last_step_of_gmsh_data_counts_and_is_told(tmp_path):
+    data = '$NodeData\n1\n"u"\n1\n0.0\n3\n{}\n1\n3\n1 {}\n2 0\n3 0\n$EndNodeData\n'
+    path = tmp_path / "m.msh"
+    path.write_text(GMSH_4 + data.format(1, 5) + data.format(3, 7) + data.format(2, 6))
+    _, fields, report = formats.read_with_report(path)
+    assert fields["u"].values.tolist() == [7, 0, 0]
+    assert report.warnings == ("1 field(s) have several steps, the last one is kept",)
+    path.write_text(GMSH_4 + data.format(1, 5) + data.format(1, 6))
+    with pytest.raises(
+        formats.FormatError, match=r"m\.msh: the data 'u' are given twice for step 1"
+    ):
+        formats.read(path)
+
+
+def test_an_entity_in_several_groups_has_the_tag_of_the_first(tmp_path):
+    path = tmp_path / "m.msh"
+    path.write_text(GMSH_4.replace("1 0 0 0 1 1 0 1 6 0", "1 0 0 0 1 1 0 2 6 8 0"))
+    mesh, _, report = formats.read_with_report(path)
+    assert mesh.cell_tags.tolist() == [6]
+    assert report.warnings == ("1 entity(s) are in several physical groups, the first is kept",)

@@ -230,14 +230,21 @@ def _fields(raw: RawMesh, cells: Block, used: Array, dim: int) -> dict[str, Fiel
             raise ValueError(f"field {name!r} has {len(values)} values for {len(used)} points")
         kept = np.asarray(values) if used.all() else np.asarray(values)[used]
         for part, array in _split(raw, name, kept, dim).items():
-            fields[part] = Field(array, "points", _kind(raw, name, array))
+            _add(fields, part, Field(array, "points", _kind(raw, name, array)))
     for name, values in cells.data.items():
         if len(values) != len(cells.rows):
             raise ValueError(f"field {name!r} has {len(values)} values for {len(cells.rows)} cells")
         for part, array in _split(raw, name, np.asarray(values), dim).items():
             key = part if part not in fields else f"{part} (cells)"
-            fields[key] = Field(array, "cells", _kind(raw, name, array))
+            _add(fields, key, Field(array, "cells", _kind(raw, name, array)))
     return fields
+
+
+def _add(fields: dict[str, Field], name: str, field: Field) -> None:
+    # the columns of one array may be called as another one
+    if name in fields:
+        raise ValueError(f"it has two fields {name!r}: only one can be meant")
+    fields[name] = field
 
 
 def _kind(raw: RawMesh, name: str, array: Array) -> Kind | None:

@@ -88,6 +88,7 @@ def with_groups(
     runs: list[tuple[tuple[int, int], Elements]], groups: Groups | None, warnings: list[str]
 ) -> list[Elements]:
     """Return the elements with the first physical group of their entity, if there are entities."""
+    n_several = 0
     for (dim, tag), elements in runs:
         if groups is None:
             continue
@@ -97,12 +98,10 @@ def with_groups(
                 "the mesh with its entities, and without partitions"
             )
         of_entity = groups[dim, tag]
-        if len(of_entity) > 1:
-            warnings.append(
-                f"entity {tag} of dimension {dim} is in {len(of_entity)} physical groups, the "
-                "first is kept"
-            )
+        n_several += len(of_entity) > 1
         elements.physical = np.full(len(elements.numbers), of_entity[0] if of_entity else 0)
+    if n_several:
+        warnings.append(f"{n_several} entity(s) are in several physical groups, the first is kept")
     return [elements for _, elements in runs]
 
 

@@ -140,9 +140,7 @@ def last_steps(parts: list[Data], warnings: list[str]) -> list[Data]:
         if part.name not in last or part.step > last[part.name].step:
             last[part.name] = part
     n_steps = Counter(name for name, _ in seen)
-    warnings += [
-        f"{name!r} is given for several steps, the last one, {part.step}, is kept"
-        for name, part in last.items()
-        if n_steps[name] > 1
-    ]
+    several = [name for name, n in n_steps.items() if n > 1]
+    if several:
+        warnings.append(f"{len(several)} field(s) have several steps, the last one is kept")
     return list(last.values())

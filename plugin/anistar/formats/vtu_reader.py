@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from .raw import Array, Block, RawMesh
+from .raw import Array, Block, RawMesh, not_read
 from .reading import reading
 from .tag_arrays import NAMES, TAGS, decoded_names, take_tags
 from .vtk_cells import blocks_of
@@ -44,17 +44,17 @@ def _mesh(data: bytes) -> RawMesh:
     if not pieces:
         raise ValueError("it has no Piece")
     _check_tags(grid, {"Piece", "FieldData"})
-    warnings: list[str] = []
-    raw = _joined([_piece(piece, encoding, warnings) for piece in pieces])
+    skipped: list[str] = []
+    raw = _joined([_piece(piece, encoding, skipped) for piece in pieces])
     raw.six = "vtk"
-    raw.warnings = warnings
+    raw.warnings += not_read(skipped)
     for array in grid.iterfind("FieldData/DataArray"):
         if array.get("Name") == NAMES:
             if raw.names:
                 raise ValueError(f"it has two arrays {NAMES}")
             raw.names = decoded_names(numbers_of(array, encoding).tolist())
             if raw.names and any(TAGS not in block.data for block in raw.blocks):
-                warnings.append(f"it has names in {NAMES} but no tags in {TAGS}")
+                raw.warnings.append(f"it has names in {NAMES} but no tags in {TAGS}")
     return raw
 
 
@@ -85,20 +85,20 @@ def _check_tags(parent: Element, known: set[str]) -> None:
             raise ValueError(f"the element {child.tag} in {parent.tag} is not known")
 
 
-def _piece(piece: Element, encoding: Encoding, warnings: list[str]) -> RawMesh:
+def _piece(piece: Element, encoding: Encoding, skipped: list[str]) -> RawMesh:
     _check_tags(piece, {"Points", "Cells", "PointData", "CellData"})
     n_points, n_cells = count(piece, "NumberOfPoints"), count(piece, "NumberOfCells")
     points = numbers_of(_only_child(_only_child(piece, "Points"), "DataArray"), encoding)
     if points.shape != (n_points, 3):
         raise ValueError(f"it announces {n_points} points, {points.shape} numbers follow")
-    cells = _arrays(_only_child(piece, "Cells"), encoding, warnings)
+    cells = _arrays(_only_child(piece, "Cells"), encoding, skipped)
     missing = {"types", "offsets", "connectivity"} - cells.keys()
     if missing:
         raise ValueError(f"its cells have no array {sorted(missing)[0]!r}")
     if len(cells["types"]) != n_cells:
         raise ValueError(f"it announces {n_cells} cells, {len(cells['types'])} types follow")
     on_points, on_cells = (
-        _data(piece, tag, length, encoding, warnings)
+        _data(piece, tag, length, encoding, skipped)
         for tag, length in (("PointData", n_points), ("CellData", n_cells))
     )
     blocks = blocks_of(cells["types"], cells["offsets"], cells["connectivity"], on_cells)
@@ -106,25 +106,25 @@ def _piece(piece: Element, encoding: Encoding, warnings: list[str]) -> RawMesh:
 
 
 def _data(
-    piece: Element, tag: str, length: int, encoding: Encoding, warnings: list[str]
+    piece: Element, tag: str, length: int, encoding: Encoding, skipped: list[str]
 ) -> dict[str, Array]:
     if piece.find(tag) is None:
         return {}
-    arrays = _arrays(_only_child(piece, tag), encoding, warnings)
+    arrays = _arrays(_only_child(piece, tag), encoding, skipped)
     for name, values in arrays.items():
         if len(values) != length:
             raise ValueError(f"{tag} {name!r} has {len(values)} values, not {length}")
     return arrays
 
 
-def _arrays(parent: Element, encoding: Encoding, warnings: list[str]) -> dict[str, Array]:
+def _arrays(parent: Element, encoding: Encoding, skipped: list[str]) -> dict[str, Array]:
     arrays: dict[str, Array] = {}
     for element in parent:
         name = attribute(element, "Name")
         if name in arrays:
             raise ValueError(f"{parent.tag} has two arrays {name!r}")
         if element.get("type") in _NOT_NUMBERS:
-            warnings.append(f"the array {name!r} in {parent.tag} holds no numbers and is not read")
+            skipped.append(f"{parent.tag} {name}")
         else:
             arrays[name] = numbers_of(element, encoding)
     return arrays
@@ -143,4 +143,12 @@ def _joined(pieces: list[RawMesh]) -> RawMesh:
     ]
     names = [name for name in filled[0].point_data if all(name in p.point_data for p in filled)]
     data = {name: np.concatenate([piece.point_data[name] for piece in filled]) for name in names}
-    return RawMesh(np.concatenate([piece.points for piece in filled]), blocks, point_data=data)
+    points = np.concatenate([piece.points for piece in filled])
+    return RawMesh(points, blocks, point_data=data, warnings=_partial(filled))
+
+
+def _partial(pieces: list[RawMesh]) -> list[str]:
+    """Return a warning about arrays that not all pieces have."""
+    sets = [{*piece.point_data, *(n for b in piece.blocks for n in b.data)} for piece in pieces]
+    partial = sorted(set.union(*sets) - set.intersection(*sets))
+    return [f"the array {name[:60]!r} is not in all pieces, and not read" for name in partial[:1]]
