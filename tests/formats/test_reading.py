@@ -317,6 +317,17 @@ def test_columns_that_are_called_as_another_array_are_refused(tmp_path):
         formats.read(path)
 
 
+def test_blank_lines_and_marks_of_editors_do_no_harm(tmp_path):
+    mesh = square(1)
+    for suffix in (".mesh", ".msh", ".su2"):
+        path = tmp_path / f"m{suffix}"
+        formats.write(path, mesh)
+        text = path.read_text()
+        for changed in (text.replace("\n", "\r\n"), text.replace("\n", " \n\n"), "\ufeff" + text):
+            path.write_text(changed, encoding="utf-8", newline="")
+            assert np.array_equal(formats.read(path)[0].points, mesh.points)
+
+
 def test_the_last_step_of_gmsh_data_counts_and_is_told(tmp_path):
     data = '$NodeData\n1\n"u"\n1\n0.0\n3\n{}\n1\n3\n1 {}\n2 0\n3 0\n$EndNodeData\n'
     path = tmp_path / "m.msh"

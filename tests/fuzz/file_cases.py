@@ -16,6 +16,9 @@ TOLD = "cannot be told"
 XML = ("vtu", "xdmf")
 """Kinds in which a line may be a whole array, which nobody misses."""
 
+MEDIT = (".mesh", ".meshb", ".sol", ".solb")
+"""Files in which sections are told apart by the count of their numbers."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class FileCase:
@@ -94,8 +97,8 @@ def _judged_content(case, original, changed):
         lost = _fewer(original, changed)
         if case.mutation == "drop_a_line" and any(name in case.kind for name in XML):
             lost = [name for name in lost if name != "fields and tags"]
-        if case.mutation == "delete" and case.changed.endswith(".solb"):
-            # the bytes may be as many as a record has: its place in the chain is another's then
+        if case.mutation == "delete" and case.changed.endswith(MEDIT):
+            # what is left of a section may be as long as it and the one behind it announce
             lost = [name for name in lost if name != "fields and tags"]
         if case.kind == "inp":  # sets that come together have no interface
             lost = [name for name in lost if name != "facets"]

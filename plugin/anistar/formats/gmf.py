@@ -26,7 +26,7 @@ def load(path: Path) -> Container:
     with reading(path):
         if suffix_of(path) in BINARY:
             return from_bytes(path.read_bytes())
-        return from_text(path.read_text(encoding="utf-8", errors="replace"))
+        return from_text(path.read_text(encoding="utf-8-sig", errors="replace"))
 
 
 def save(path: Path, container: Container) -> None:

@@ -7,6 +7,7 @@ Gmsh reference manual, "MSH file format" and its legacy versions.
 
 from __future__ import annotations
 
+import codecs
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -67,7 +68,7 @@ def read(path: Path) -> RawMesh:
         If the file is damaged or of another version.
     """
     with reading(path):
-        return _mesh(path.read_bytes())
+        return _mesh(path.read_bytes().removeprefix(codecs.BOM_UTF8))
 
 
 def _mesh(data: bytes) -> RawMesh:

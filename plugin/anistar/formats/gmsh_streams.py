@@ -60,11 +60,13 @@ class TextStream:
         self._numbers: Array | None = None
 
     def line(self) -> str:
-        """Return the next line."""
-        end = self._body.find("\n", self._at)
-        end = len(self._body) if end < 0 else end
-        line = self._body[self._at : end].strip()
-        self._at = min(end + 1, len(self._body))
+        """Return the next line that is not blank, nothing at the end."""
+        line = ""
+        while not line and self._at < len(self._body):
+            end = self._body.find("\n", self._at)
+            end = len(self._body) if end < 0 else end
+            line = self._body[self._at : end].strip()
+            self._at = min(end + 1, len(self._body))
         return line
 
     def ints(self, count: int) -> Array:

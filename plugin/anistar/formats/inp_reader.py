@@ -67,7 +67,7 @@ def read(path: Path) -> RawMesh:
         If the file is damaged, includes another one, or has elements that are not known.
     """
     with reading(path):
-        return _mesh(path.read_text(encoding="utf-8", errors="replace"))
+        return _mesh(path.read_text(encoding="utf-8-sig", errors="replace"))
 
 
 def _mesh(text: str) -> RawMesh:

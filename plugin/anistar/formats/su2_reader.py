@@ -32,7 +32,7 @@ Entry = tuple[str, str, str]
 def read(path: Path) -> RawMesh:
     """Read cells, points and markers; a marker that is no number gets a free one and a name."""
     with reading(path):
-        return _mesh(path.read_text(encoding="utf-8", errors="replace"))
+        return _mesh(path.read_text(encoding="utf-8-sig", errors="replace"))
 
 
 def _mesh(text: str) -> RawMesh:

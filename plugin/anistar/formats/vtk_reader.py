@@ -105,7 +105,7 @@ def _read_geometry(grid: _Grid, section: str, words: list[str], numbers: LegacyN
         raise ValueError(f"it has two sections {section}: only one can be meant")
     n = _count(words, 1)
     if section == "POINTS":
-        grid.points = numbers.read(words[2], 3 * n).reshape(n, 3)
+        grid.points = numbers.read(_word(words, 2), 3 * n).reshape(n, 3)
     elif section == "CELL_TYPES":
         grid.types = numbers.read("int", n)
     elif numbers.peek().upper().startswith("OFFSETS"):
@@ -142,12 +142,20 @@ def _read_arrays(
         width = _count(words, 3) if len(words) > 3 else 1
         if numbers.peek().upper().startswith("LOOKUP_TABLE"):
             numbers.next_words()
-        _keep(data, words[1], numbers.read(words[2], width * n_rows).reshape(n_rows, width))
+        _keep(
+            data,
+            _word(words, 1),
+            numbers.read(_word(words, 2), width * n_rows).reshape(n_rows, width),
+        )
     elif section == "LOOKUP_TABLE":
         numbers.read("float" if numbers.is_text else "unsigned_char", 4 * _count(words, 2))
     elif section in _FIXED_WIDTHS:
         width = _FIXED_WIDTHS[section]
-        _keep(data, words[1], numbers.read(words[2], width * n_rows).reshape(n_rows, width))
+        _keep(
+            data,
+            _word(words, 1),
+            numbers.read(_word(words, 2), width * n_rows).reshape(n_rows, width),
+        )
     else:
         raise ValueError(f"the section {section[:40]!r} is not known")
 
@@ -174,6 +182,12 @@ def _type_in(words: list[str], section: str) -> str:
     if len(words) != 2 or words[0].upper() != section:
         raise ValueError(f"{section} with a type is missing behind CELLS")
     return words[1]
+
+
+def _word(words: list[str], at: int) -> str:
+    if at >= len(words):
+        raise ValueError(f"{' '.join(words)[:60]!r} has no name or type")
+    return words[at]
 
 
 def _count(words: list[str], at: int) -> int:
