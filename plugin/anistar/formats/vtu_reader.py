@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
@@ -149,6 +150,10 @@ def _joined(pieces: list[RawMesh]) -> RawMesh:
 
 def _partial(pieces: list[RawMesh]) -> list[str]:
     """Return a warning about arrays that not all pieces have."""
-    sets = [{*piece.point_data, *(n for b in piece.blocks for n in b.data)} for piece in pieces]
-    partial = sorted(set.union(*sets) - set.intersection(*sets))
+    n_pieces = Counter(
+        name
+        for piece in pieces
+        for name in {*piece.point_data, *(key for block in piece.blocks for key in block.data)}
+    )
+    partial = sorted(name for name, n in n_pieces.items() if n < len(pieces))
     return [f"the array {name[:60]!r} is not in all pieces, and not read" for name in partial[:1]]
