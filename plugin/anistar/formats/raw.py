@@ -31,13 +31,13 @@ REFUSED = {
 _MOST_NAMED, _LONGEST_NAME = 5, 60
 
 
-def not_read(names: list[str]) -> list[str]:
-    """Return a warning about sections that are not known, none if there are none."""
+def not_read(names: list[str], *, what: str = "section", why: str = "not known") -> list[str]:
+    """Return a warning about parts of a file that are left out, none if there are none."""
     if not names:
         return []
     more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
     named = ", ".join(name[:_LONGEST_NAME] for name in names[:_MOST_NAMED])
-    return [f"not known and not read: the section {named}{more}"]
+    return [f"{why} and not read: the {what} {named}{more}"]
 
 
 @dataclass

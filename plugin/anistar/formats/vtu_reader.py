@@ -145,15 +145,13 @@ def _joined(pieces: list[RawMesh]) -> RawMesh:
     names = [name for name in filled[0].point_data if all(name in p.point_data for p in filled)]
     data = {name: np.concatenate([piece.point_data[name] for piece in filled]) for name in names}
     points = np.concatenate([piece.points for piece in filled])
-    return RawMesh(points, blocks, point_data=data, warnings=_partial(filled))
+    partial = _partial([piece.point_data for piece in filled])
+    partial |= _partial([block.data for block in blocks])
+    warnings = not_read(sorted(partial), what="array", why="not in all pieces")
+    return RawMesh(points, blocks, point_data=data, warnings=warnings)
 
 
-def _partial(pieces: list[RawMesh]) -> list[str]:
-    """Return a warning about arrays that not all pieces have."""
-    n_pieces = Counter(
-        name
-        for piece in pieces
-        for name in {*piece.point_data, *(key for block in piece.blocks for key in block.data)}
-    )
-    partial = sorted(name for name, n in n_pieces.items() if n < len(pieces))
-    return [f"the array {name[:60]!r} is not in all pieces, and not read" for name in partial[:1]]
+def _partial(groups: list[dict[str, Array]]) -> set[str]:
+    """Return the names of arrays that not all groups have."""
+    n_groups = Counter(name for group in groups for name in group)
+    return {name for name, n in n_groups.items() if n < len(groups)}
