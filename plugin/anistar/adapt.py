@@ -314,7 +314,11 @@ def metric_field_names(
     ValueError
         If a wanted field is unknown or cannot make a metric, or if there is none.
     """
-    usable = tuple(name for name, field in fields.items() if field.kind in ("scalar", "vector"))
+    usable = tuple(
+        name
+        for name, field in fields.items()
+        if field.kind in ("scalar", "vector") and field.on in ("points", "cells")
+    )
     for name in wanted or ():
         if name not in fields:
             raise ValueError(f"unknown field {name!r}; the fields are: {_listed(fields)}")
@@ -322,14 +326,14 @@ def metric_field_names(
             field = fields[name]
             raise ValueError(
                 f"field {name!r} is a {field.kind} on {field.on}: a metric needs a scalar or a "
-                "vector"
+                "vector on points or cells"
             )
     at_points = tuple(name for name in usable if fields[name].on == "points")
     names = tuple(wanted) if wanted is not None else at_points
     if not names:
         raise ValueError(
             "no scalar or vector field at the points to make a metric of; the fields are: "
-            f"{_listed(fields)}"
+            f"{_listed(fields)}; those on cells take part when metric_fields names them"
         )
     return names
 

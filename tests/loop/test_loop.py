@@ -326,6 +326,18 @@ def test_means_over_cells_drive_a_loop(make, targets):
     assert last.error["c"] == pytest.approx(at_points, rel=0.3)
 
 
+def test_values_that_make_no_metric_are_named():
+    def solve(mesh, fields):
+        corners = mesh.points[mesh.cells][..., 0]
+        return {"c": Field(corners.mean(axis=1), "cells"), "q": Field(corners, "cell_nodes")}
+
+    with pytest.raises(LoopError, match=r"at the points .* on cells take part when metric_fields"):
+        adapt_loop(solve, square(4), LoopOptions(complexities=[50]))
+    options = LoopOptions(adapt=AdaptOptions(metric_fields=["q"]), complexities=[50])
+    with pytest.raises(LoopError, match="field 'q' is a scalar on cell_nodes: a metric needs"):
+        adapt_loop(solve, square(4), options)
+
+
 def test_linear_means_over_cells_have_no_error():
     mesh = square(6)
     means = mesh.points[mesh.cells].mean(axis=1).sum(axis=1)
