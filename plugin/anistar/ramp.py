@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,14 +15,6 @@ from .telling import tell
 from .transfer import TransferOptions, transfer
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class _Scaled:
-    """The mesh in the coordinates of the core."""
-
-    points: Floats
-    cells: NDArray[np.int32]
 
 
 def approached(mesh: Mesh, metric: Floats, scale: float, ratio: float | str | None) -> Refinement:
@@ -48,7 +39,8 @@ def approached(mesh: Mesh, metric: Floats, scale: float, ratio: float | str | No
     if ratio is None:
         return nothing
     try:
-        found = refinement_limited(_Scaled(mesh.points * scale, mesh.cells), metric, ratio)
+        scaled = Mesh._trusted(points=mesh.points * scale, cells=mesh.cells)
+        found = refinement_limited(scaled, metric, ratio)
     except MetricError:  # the cells, not the metric, which was checked
         return nothing
     if found.is_limited.any():
