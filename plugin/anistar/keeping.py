@@ -30,13 +30,16 @@ class KeepOptions:
     A new mesh has few edges that are too long, none longer than 2, and the complexity of its own
     metric within 20 %. The bounds are wider, so that a mesh is kept while the solution changes
     little, and a new one is not made anew at once. Edges that are too long lose accuracy and
-    decide; those that are too short only cost, and decide when they are many: where a solution
-    is flat its metric is noise, which asks for other sizes each time.
+    decide. Those that are too short only cost, and never decide alone: where a solution is flat
+    its metric is noise, which asks for other sizes each time.
 
     Parameters
     ----------
     under : float
         Largest share of edges that are longer than sqrt(2) in the metric.
+    misplaced : float
+        Largest share of edges that are shorter than 1/sqrt(2), where more than a third of `under`
+        are too long: then a feature has left the points that were made for it.
     over : float
         By what share the complexity of the metric that the mesh implies may exceed that of the
         metric; in 3D that of a good mesh for the metric is 1.2 times larger to begin with, since
@@ -52,12 +55,14 @@ class KeepOptions:
     """
 
     under: float = 0.15
+    misplaced: float = 0.18
     over: float = 0.6
     longest: float = 4.0
 
     def __post_init__(self) -> None:
-        if not 0 <= self.under <= 1:
-            raise ValueError(f"under must be in [0, 1], got {self.under}")
+        for name in ("under", "misplaced"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise ValueError(f"{name} must be in [0, 1], got {getattr(self, name)}")
         if not self.over >= 0:
             raise ValueError(f"over must be at least 0, got {self.over}")
         if not self.longest > UNIT[1]:
@@ -84,7 +89,10 @@ def needs_adaptation(mesh: Mesh, M: Floats, keep: KeepOptions | None = None) -> 
     require(KeepOptions, keep=keep)
     M = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     lengths = metric_lengths(mesh, M, unique_edges(mesh.cells, mesh.n_points))
-    if lengths.max() > keep.longest or (lengths > UNIT[1]).mean() > keep.under:
+    too_long, too_short = (lengths > UNIT[1]).mean(), (lengths < UNIT[0]).mean()
+    if lengths.max() > keep.longest or too_long > keep.under:
+        return True
+    if too_short > keep.misplaced and too_long > keep.under / 3:
         return True
     if math.isinf(keep.over):
         return False

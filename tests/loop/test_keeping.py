@@ -36,6 +36,17 @@ def test_short_edges_alone_decide_nothing():
     assert not needs_adaptation(mesh, asked, KeepOptions(over=1.5))
 
 
+def test_points_that_a_feature_has_left_count_with_the_edges_where_it_went():
+    mesh, metric = made_for(0.05)
+    x = mesh.points[:, 0, None, None]
+    left = np.where(x < 0.4, metric / 4, metric)
+    moved = np.where(x > 0.9, 3 * metric, left)
+    assert not needs_adaptation(mesh, left)
+    assert needs_adaptation(mesh, moved)
+    assert not needs_adaptation(mesh, moved, KeepOptions(misplaced=1.0))
+    assert not needs_adaptation(mesh, np.where(x > 0.9, 3 * metric, metric))
+
+
 def test_long_edges_decide_by_their_share_and_by_the_longest():
     mesh, metric = made_for(0.05)
     corner = (np.square(mesh.points).sum(axis=1) < 0.2**2)[:, None, None]
@@ -49,6 +60,7 @@ def test_long_edges_decide_by_their_share_and_by_the_longest():
     ("options", "message"),
     [
         ({"under": -0.1}, r"under must be in \[0, 1\], got -0\.1"),
+        ({"misplaced": 2.0}, r"misplaced must be in \[0, 1\], got 2\.0"),
         ({"over": -1.0}, r"over must be at least 0, got -1\.0"),
         ({"over": np.nan}, "over must be at least 0, got nan"),
         ({"longest": 1.0}, r"longest must be above sqrt\(2\), got 1\.0"),
