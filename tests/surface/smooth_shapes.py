@@ -46,6 +46,32 @@ def bent_block(n_around, n_along=3, inner=0.5, outer=1.0, angle=np.pi / 2):
     return Mesh(**{**bare.arrays(), "facet_tags": tags})
 
 
+def torus(n_around, n_section, thickness, turn):
+    """A ring of tetrahedra of radius one, each section a regular polygon around its middle."""
+    phi = 2 * np.pi * (np.arange(n_section) / n_section + turn)
+    section = thickness * np.stack([np.cos(phi), np.sin(phi)], 1)
+    section = np.concatenate([[[0, 0]], section])
+    angle = 2 * np.pi * np.arange(n_around) / n_around
+    radius = 1 + section[:, 0]
+    height = np.broadcast_to(section[:, 1], (n_around, n_section + 1))
+    x, y = np.cos(angle)[:, None] * radius, np.sin(angle)[:, None] * radius
+    points = np.stack([x, y, height], -1).reshape(-1, 3)
+    cells = []
+    for i in range(n_around):
+        here, there = i * (n_section + 1), (i + 1) % n_around * (n_section + 1)
+        for k in range(n_section):
+            a, b = sorted((1 + k, 1 + (k + 1) % n_section))
+            cells += [
+                [here, here + a, here + b, there + b],
+                [here, here + a, there + a, there + b],
+                [here, there, there + a, there + b],
+            ]
+    cells = np.array(cells)
+    legs = points[cells[:, 1:]] - points[cells[:, :1]]
+    cells = np.where((np.linalg.det(legs) < 0)[:, None], cells[:, [0, 1, 3, 2]], cells)
+    return Mesh(points=points, cells=cells)
+
+
 def samples(mesh, tag, per_facet=3, seed=0):
     """Points on the facets with a tag."""
     weights = np.random.default_rng(seed).dirichlet(np.ones(3), per_facet)

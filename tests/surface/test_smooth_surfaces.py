@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from meshes import cube
-from smooth_shapes import ball, bent_block, samples
+from smooth_shapes import ball, bent_block, samples, torus
 
 from anistar import remesh, validate
 from anistar.curvature import smooth_surface, surface_curvature
@@ -47,32 +47,6 @@ def test_two_rows_of_points_on_a_cylinder_make_no_sphere(n_around):
     feet, _ = smooth_surface(mesh).project(samples(mesh, 1), 1)
     chord = 0.98 * (1 - np.cos(np.pi / n_around / 2))
     assert abs(around(feet) - 0.98).max() < 0.05 * chord
-
-
-def torus(n_around, n_section, thickness, turn):
-    """A ring of tetrahedra of radius one, each section a regular polygon around its middle."""
-    phi = 2 * np.pi * (np.arange(n_section) / n_section + turn)
-    section = thickness * np.stack([np.cos(phi), np.sin(phi)], 1)
-    section = np.concatenate([[[0, 0]], section])
-    angle = 2 * np.pi * np.arange(n_around) / n_around
-    radius = 1 + section[:, 0]
-    height = np.broadcast_to(section[:, 1], (n_around, n_section + 1))
-    x, y = np.cos(angle)[:, None] * radius, np.sin(angle)[:, None] * radius
-    points = np.stack([x, y, height], -1).reshape(-1, 3)
-    cells = []
-    for i in range(n_around):
-        here, there = i * (n_section + 1), (i + 1) % n_around * (n_section + 1)
-        for k in range(n_section):
-            a, b = sorted((1 + k, 1 + (k + 1) % n_section))
-            cells += [
-                [here, here + a, here + b, there + b],
-                [here, here + a, there + a, there + b],
-                [here, there, there + a, there + b],
-            ]
-    cells = np.array(cells)
-    legs = points[cells[:, 1:]] - points[cells[:, :1]]
-    cells = np.where((np.linalg.det(legs) < 0)[:, None], cells[:, [0, 1, 3, 2]], cells)
-    return Mesh(points=points, cells=cells)
 
 
 @given(
