@@ -178,7 +178,7 @@ def _call_core(
             geometry.facet_tags,
             geometry.corners,
             np.array(options.frozen_tags, dtype=np.int32),
-            options.ridge_angle,
+            options.as_shape(),
             options.as_settings(),
             None if project is None else pointwise(project, geometry, scale),
             options.callback,

@@ -46,7 +46,9 @@ class RemeshOptions:
     frozen_tags : sequence of int
         Facets with these tags are kept as they are.
     ridge_angle : float
-        Degrees; the boundary has a corner (in 3D: a ridge) where it turns by at least this.
+        Degrees; a smooth boundary has a corner (in 3D: a ridge) where it turns by at least this.
+        In 3D a ridge whose angle falls below goes on as long as it turns clearly more than the
+        surface around it.
     agreement : bool or "auto"
         Move vertices until the stars of the mesh agree, so that `certify` finds every star
         Delaunay in its own metric. "auto" does so when the metric varies slowly enough from
@@ -113,6 +115,10 @@ class RemeshOptions:
             raise ValueError(f"seed must be in [0, 2**64), got {self.seed}")
         if not 1 <= self.threads <= 256:
             raise ValueError(f"threads must be in [1, 256], got {self.threads}")
+
+    def as_shape(self) -> dict[str, Any]:
+        """Return what the core is told about the facets of the geometry."""
+        return {"kind": "smooth", "ridge_angle": self.ridge_angle}
 
     def as_settings(self) -> dict[str, Any]:
         """Return what the core is told in 2D and in 3D, where a bound that is off is infinite."""

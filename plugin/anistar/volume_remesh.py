@@ -84,7 +84,7 @@ def remesh_volume(
             geometry.edges,
             geometry.edge_tags,
             np.array(options.frozen_tags, dtype=np.int32),
-            options.ridge_angle,
+            options.as_shape(),
             options.as_settings(),
             None if project is None else pointwise(project, geometry, scale),
             options.callback,

@@ -27,7 +27,7 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
                  const Array1<Index> &geometry_cell_tags,
                  const Array2<Index> &geometry_facets,
                  const Array1<Index> &geometry_facet_tags, const Array1<Index> &corners,
-                 const Array1<Index> &frozen_tags, double ridge_angle,
+                 const Array1<Index> &frozen_tags, const nb::dict &shape,
                  const nb::dict &settings, const nb::object &project,
                  const nb::object &callback) {
   const auto tensors = tensors_of<2>(metric);
@@ -35,7 +35,7 @@ nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
       points_of<2>(geometry_points),   cells_of<2>(geometry_cells),
       indices_of(geometry_cell_tags),  facets_of<2>(geometry_facets),
       indices_of(geometry_facet_tags), indices_of(corners),
-      indices_of(frozen_tags),         ridge_angle};
+      indices_of(frozen_tags),         shape_of(shape)};
   const RemeshSettings chosen = settings_of(settings);
   const Projection projection = projection_of(project);
   RemeshResult<2> out;
@@ -72,7 +72,7 @@ void bind_remesh(nb::module_ &module) {
       nb::arg("geometry_cells").noconvert(), nb::arg("geometry_cell_tags").noconvert(),
       nb::arg("geometry_facets").noconvert(),
       nb::arg("geometry_facet_tags").noconvert(), nb::arg("corners").noconvert(),
-      nb::arg("frozen_tags").noconvert(), nb::arg("ridge_angle"), nb::arg("settings"),
+      nb::arg("frozen_tags").noconvert(), nb::arg("shape"), nb::arg("settings"),
       nb::arg("project").none(), nb::arg("callback").none(),
       "A mesh of the geometry with unit edges in the metric that the mesh "
       "(points, cells) carries.");

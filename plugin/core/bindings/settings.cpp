@@ -54,6 +54,13 @@ RemeshSettings settings_of(const nb::dict &given) {
   return out;
 }
 
+DomainShape shape_of(const nb::dict &given) {
+  const auto kind = nb::cast<std::string>(given["kind"]);
+  if (kind != "smooth" && kind != "polyhedron")
+    throw std::invalid_argument("unknown kind of shape '" + kind + "'");
+  return {kind == "polyhedron", nb::cast<double>(given["ridge_angle"])};
+}
+
 Monitor::Progress progress_of(nb::handle callback) {
   return [callback](const std::string &phase, double fraction) {
     nb::gil_scoped_acquire acquire;

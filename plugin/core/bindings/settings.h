@@ -3,6 +3,7 @@
 
 #include "arrays.h"
 #include "base/monitor.h"
+#include "remesh/domain_shape.h"
 #include "remesh/remesh_settings.h"
 
 namespace anistar::bindings {
@@ -10,6 +11,10 @@ namespace anistar::bindings {
 /// The settings by the names of the core.
 /// @throws std::invalid_argument for an unknown mode
 [[nodiscard]] RemeshSettings settings_of(const nb::dict &given);
+
+/// What the facets mean, by the names of the core.
+/// @throws std::invalid_argument for an unknown kind
+[[nodiscard]] DomainShape shape_of(const nb::dict &given);
 
 /// Tells Python about progress and lets it interrupt: Ctrl-C, or an exception in the
 /// user's callback, unwinds the core.

@@ -21,7 +21,7 @@ namespace {
           indices_of(edge_tags),
           indices_of(corners),
           {},
-          ridge_angle};
+          {false, ridge_angle}};
 }
 
 /// Feet and normals, row by row.
@@ -91,6 +91,15 @@ void bind_surface(nb::module_ &module) {
           },
           nb::arg("queries").noconvert(), nb::arg("tag").none(),
           "Feet of points on the ridges with a tag; None: those without one.")
+      .def(
+          "ridges",
+          [](const SmoothSurface &self) {
+            std::vector<std::array<Index, 2>> edges;
+            for (const RidgeSegment &ridge : self.segments())
+              edges.push_back(ridge.ends);
+            return rows<Index, 2>(edges);
+          },
+          "The edges that are ridges, (k, 2).")
       .def(
           "curvature",
           [](const SmoothSurface &self, std::size_t n_points) {

@@ -23,6 +23,9 @@ const double steepest_tangent =
 /// Where an arc meets its tangent line, the polyline turns by half the turn between two
 /// chords of the arc; a turn well beyond that is a corner.
 constexpr double tangent_turn_factor = 1.5;
+/// A turn of this fraction of the ridge angle is a corner when it is this many times as
+/// large as those beside it.
+constexpr double weak_fraction = 1. / 3, standing_out = 3;
 
 double turn(const Vector<2> &u, const Vector<2> &v) {
   return std::abs(elementary::angle_of(cross(u, v), u.dot(v)));
@@ -130,10 +133,9 @@ struct Chains {
     if (!outgoing(v, 0).reversed().continues(outgoing(v, 1)))
       return true;
     const double angle = turn_at(v);
-    // a regular polygon of just that angle keeps its corners
-    if (angle > input.ridge_angle * std::numbers::pi / 180 * (1 - 1e-9))
+    if (angle >= input.shape.sharp_turn() * std::numbers::pi / 180)
       return true;
-    if (angle < straight_turn)
+    if (input.shape.is_polyhedron || angle < straight_turn)
       return false;
     const bool straight[2] = {in_straight_run(v, 0), in_straight_run(v, 1)};
     if (straight[0] && straight[1])
@@ -145,7 +147,20 @@ struct Chains {
             joins_straight_run(next) || angle > tangent_turn_factor * turn_at(next))
           return true;
       }
-    return false;
+    return stands_out(v, angle);
+  }
+  /// Between two curves. The turns at three points of an arc never differ as much,
+  /// however they are spaced.
+  [[nodiscard]] bool stands_out(Index v, double angle) const {
+    if (angle < weak_fraction * input.shape.sharp_turn() * std::numbers::pi / 180)
+      return false;
+    for (std::size_t n : {0u, 1u}) {
+      const Index next = outgoing(v, n).to;
+      if (at[static_cast<std::size_t>(next)].size() != 2 ||
+          angle < standing_out * turn_at(next))
+        return false;
+    }
+    return true;
   }
   [[nodiscard]] bool joins_straight_run(Index v) const {
     return in_straight_run(v, 0) || in_straight_run(v, 1);

@@ -3,6 +3,7 @@
 
 #include "base/tensor.h"
 #include "mesh/adjacency.h"
+#include "remesh/domain_shape.h"
 
 #include <functional>
 #include <span>
@@ -22,7 +23,7 @@ struct GeometryInput {
   std::span<const Index> facet_tags;
   std::span<const Index> corners;     ///< points that must stay
   std::span<const Index> frozen_tags; ///< facets with these tags are kept as they are
-  double ridge_angle = 45;            ///< degrees; a sharper turn is a corner
+  DomainShape shape;
 };
 
 /// No region: the outside of the domain.
@@ -78,8 +79,8 @@ struct Geometry {
 };
 
 /// Cuts the facets into curves at corners: where other than two facets meet, tags or
-/// regions change, the chain turns by more than the ridge angle, two straight runs
-/// meet, or the caller says so.
+/// regions change, the chain turns by the ridge angle or far more than beside it, two
+/// straight runs meet, or the caller says so.
 /// @throws std::invalid_argument for a facet that is no facet of a cell.
 [[nodiscard]] Geometry make_geometry(const GeometryInput &input,
                                      const Projection *projection);

@@ -34,9 +34,9 @@ constexpr double rank_tolerance = 1e-2;
 class Fitter {
 public:
   Fitter(std::span<const Vector<3>> points, std::span<const Facet<3>> facets,
-         std::span<const Index> patches)
+         const Features &features)
       : points_(points), facets_(facets) {
-    collect(patches);
+    collect(features);
     stamp_.assign(out_.vertex.size(), none);
   }
 
@@ -67,33 +67,23 @@ private:
             static_cast<std::size_t>(first_[s + 1] - first_[s])};
   }
 
-  /// One jet for every vertex and patch that meet.
-  void collect(std::span<const Index> patches) {
-    struct Corner {
-      Index vertex, patch, facet;
-      std::size_t k;
-    };
-    std::vector<Corner> corners;
+  /// One jet for every side of a ridge at a vertex.
+  void collect(const Features &features) {
+    out_.facet_jets = features.facet_sides;
+    out_.vertex.resize(features.n_sides);
+    first_.assign(features.n_sides + 1, 0);
+    for (const Facet<3> &sides : features.facet_sides)
+      for (Index side : sides)
+        ++first_[static_cast<std::size_t>(side) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    facets_at_.resize(3 * facets_.size());
+    std::vector<Index> next(first_.begin(), first_.end() - 1);
     for (std::size_t f = 0; f < facets_.size(); ++f)
-      for (std::size_t k = 0; k < 3; ++k)
-        corners.push_back({facets_[f][k], patches[f], static_cast<Index>(f), k});
-    std::sort(corners.begin(), corners.end(), [](const Corner &a, const Corner &b) {
-      return std::tie(a.vertex, a.patch, a.facet) <
-             std::tie(b.vertex, b.patch, b.facet);
-    });
-    out_.facet_jets.resize(facets_.size());
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const Corner &here = corners[k];
-      if (k == 0 || here.vertex != corners[k - 1].vertex ||
-          here.patch != corners[k - 1].patch) {
-        out_.vertex.push_back(here.vertex);
-        first_.push_back(static_cast<Index>(k));
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto side = static_cast<std::size_t>(features.facet_sides[f][i]);
+        out_.vertex[side] = facets_[f][i];
+        facets_at_[static_cast<std::size_t>(next[side]++)] = static_cast<Index>(f);
       }
-      facets_at_.push_back(here.facet);
-      out_.facet_jets[static_cast<std::size_t>(here.facet)][here.k] =
-          static_cast<Index>(out_.vertex.size() - 1);
-    }
-    first_.push_back(static_cast<Index>(corners.size()));
   }
 
   [[nodiscard]] Vector<3> facet_normal(Index f) const {
@@ -118,7 +108,10 @@ private:
   }
 
   /// The jets around one, ring after ring, as far as the surface faces its normal.
+  /// Around the end of a ridge that may be the jet of the other side, which says
+  /// nothing.
   void gather(Index jet, const Vector<3> &normal) {
+    const Index v = out_.vertex[static_cast<std::size_t>(jet)];
     ring_.assign(1, jet);
     stamp_[static_cast<std::size_t>(jet)] = jet;
     std::size_t begin = 0;
@@ -130,7 +123,8 @@ private:
           if (std::abs(m.dot(normal)) < most_turned * m.norm())
             continue;
           for (Index other : out_.facet_jets[static_cast<std::size_t>(f)])
-            if (std::exchange(stamp_[static_cast<std::size_t>(other)], jet) != jet)
+            if (std::exchange(stamp_[static_cast<std::size_t>(other)], jet) != jet &&
+                out_.vertex[static_cast<std::size_t>(other)] != v)
               ring_.push_back(other);
         }
     }
@@ -244,8 +238,8 @@ private:
 } // namespace
 
 Jets fit_jets(std::span<const Vector<3>> points, std::span<const Facet<3>> facets,
-              std::span<const Index> patches) {
-  return Fitter(points, facets, patches).run();
+              const Features &features) {
+  return Fitter(points, facets, features).run();
 }
 
 } // namespace anistar

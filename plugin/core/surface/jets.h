@@ -16,17 +16,14 @@ struct Jet {
   SymmetricTensor<3> curvature; ///< principal curvatures with their directions
 };
 
-/// The jets of the smooth patches of a surface; a vertex between patches has one for
-/// each.
+/// The jets of a surface; a vertex of a ridge has one for each side of it.
 struct Jets {
   std::vector<Jet> jets;
   std::vector<Index> vertex;        ///< of every jet
   std::vector<Facet<3>> facet_jets; ///< at the corners of every facet
 };
 
-/// @param patches of every facet, see find_features.
 [[nodiscard]] Jets fit_jets(std::span<const Vector<3>> points,
-                            std::span<const Facet<3>> facets,
-                            std::span<const Index> patches);
+                            std::span<const Facet<3>> facets, const Features &features);
 
 } // namespace anistar

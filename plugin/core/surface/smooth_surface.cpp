@@ -17,6 +17,8 @@ const double steepest_tangent =
 /// Chords that leave a tangent by less (radians) are straight: above the noise of
 /// coordinates in a text file, below the turn of any sampled curve.
 constexpr double straight_turn = 1e-7;
+/// A curve lies nearer to its chord than this fraction of it: tangents are no steeper.
+constexpr double farthest_from_chord = .25;
 constexpr int max_rounds = 8;
 /// Rounds end when the foot moves by less than this fraction of the piece.
 constexpr double settled = 1e-13;
@@ -174,8 +176,14 @@ Index CurvedPieces::nearest_feature(const Vector<3> &x) const {
   return pieces_[static_cast<std::size_t>(at.piece)].feature;
 }
 
-CurvedPieces::Foot CurvedPieces::project(const Vector<3> &x,
-                                         const FeatureSet &among) const {
+bool CurvedPieces::has_any(const FeatureSet &among) const {
+  return std::any_of(pieces_.begin(), pieces_.end(), [&](const CurvedPiece &piece) {
+    return among[static_cast<std::size_t>(piece.feature)] != 0;
+  });
+}
+
+CurvedPieces::Approach CurvedPieces::approach(const Vector<3> &x,
+                                              const FeatureSet &among) const {
   Vector<3> shift = Vector<3>::Zero();
   Nearest at;
   for (int round = 0; round < max_rounds; ++round) {
@@ -188,8 +196,28 @@ CurvedPieces::Foot CurvedPieces::project(const Vector<3> &x,
         settled * settled * (piece.corners[1] - piece.corners[0]).squaredNorm())
       break;
   }
+  return {at, shift};
+}
+
+CurvedPieces::Foot CurvedPieces::project(const Vector<3> &x,
+                                         const FeatureSet &among) const {
+  const auto [at, shift] = approach(x, among);
   const CurvedPiece &piece = pieces_[static_cast<std::size_t>(at.piece)];
   return {piece.chordal(at.weights) + shift, piece.normal(at.weights)};
+}
+
+std::optional<CurvedPieces::Place> CurvedPieces::find(const Vector<3> &x,
+                                                      double tolerance) const {
+  const Nearest nearby = nearest(x, none, {});
+  const CurvedPiece &chord = pieces_[static_cast<std::size_t>(nearby.piece)];
+  if (std::sqrt(nearby.distance) >
+      farthest_from_chord * (chord.corners[1] - chord.corners[0]).norm() + tolerance)
+    return std::nullopt; // as nearly all points are
+  const auto [at, shift] = approach(x, {});
+  const CurvedPiece &piece = pieces_[static_cast<std::size_t>(at.piece)];
+  if (!((piece.chordal(at.weights) + shift - x).norm() <= tolerance))
+    return std::nullopt;
+  return Place{at.piece, at.weights};
 }
 
 const CurvedPieces *SmoothSurface::find(const Tagged &all, Index tag) {
@@ -199,10 +227,12 @@ const CurvedPieces *SmoothSurface::find(const Tagged &all, Index tag) {
   return nullptr;
 }
 
-double SmoothSurface::distance_to_ridges(const Vector<3> &x) const {
+double SmoothSurface::distance_to_ridges(const Vector<3> &x,
+                                         const FeatureSet &among) const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto &[tag, pieces] : ridges_)
-    least = std::min(least, (pieces.project(x).x - x).norm());
+    if (pieces.has_any(among))
+      least = std::min(least, (pieces.project(x, among).x - x).norm());
   return least;
 }
 
@@ -210,13 +240,14 @@ SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
   const Features features = find_features(geometry);
   n_patches_ = features.patches.size();
   n_curves_ = features.curves.size();
-  jets_ = fit_jets(geometry.points, geometry.facets, features.facet_patch);
+  jets_ = fit_jets(geometry.points, geometry.facets, features);
   const auto point = [&](Index v) -> const Vector<3> & {
     return geometry.points[static_cast<std::size_t>(v)];
   };
   const RidgeTangents tangents(geometry.points, features);
   std::map<Index, std::vector<CurvedPiece>> surfaces, ridges;
   RidgeCurves curve_of;
+  std::vector<RidgeSegment> untagged_segments; // in the order of their pieces
   for (const RidgeSegment &ridge : features.ridges) {
     const auto [a, b] = ridge.ends;
     curve_of[{std::min(a, b), std::max(a, b)}] = ridge.curve;
@@ -227,7 +258,11 @@ SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
         control_offset(point(a) - point(b), tangents.at(b, a, ridge.curve));
     const SurfaceCurve &curve = features.curves[static_cast<std::size_t>(ridge.curve)];
     ridges[curve.is_given ? curve.tag : untagged].push_back(piece);
+    if (!curve.is_given)
+      untagged_segments.push_back(ridge);
   }
+  chains_ = RidgeChains(untagged_segments, features.dimension);
+  segments_ = features.ridges;
   for (std::size_t f = 0; f < geometry.facets.size(); ++f) {
     const Facet<3> &t = geometry.facets[f];
     CurvedPiece piece =

@@ -10,6 +10,7 @@
 
 #include "search/box_tree.h"
 #include "surface/jets.h"
+#include "surface/ridge_chains.h"
 #include "surface/surface_features.h"
 
 #include <limits>
@@ -46,9 +47,18 @@ public:
   /// The foot of x: the point in whose normal direction x lies, to the accuracy of a
   /// few rounds. @pre there are pieces.
   [[nodiscard]] Foot project(const Vector<3> &x, const FeatureSet &among = {}) const;
+  /// Whether some piece is part of one of these.
+  [[nodiscard]] bool has_any(const FeatureSet &among) const;
   /// The patch or curve of the piece nearest to x.
   [[nodiscard]] Index nearest_feature(const Vector<3> &x) const;
   [[nodiscard]] const CurvedPiece &piece(std::size_t k) const { return pieces_[k]; }
+
+  struct Place {
+    Index piece;
+    std::array<double, 3> weights;
+  };
+  /// Where on a piece x lies, if it is no farther from it than this.
+  [[nodiscard]] std::optional<Place> find(const Vector<3> &x, double tolerance) const;
 
 private:
   std::vector<CurvedPiece> pieces_;
@@ -59,6 +69,11 @@ private:
     std::array<double, 3> weights{};
     double distance = std::numeric_limits<double>::infinity(); ///< squared
   };
+  struct Approach {
+    Nearest at;
+    Vector<3> shift; ///< from there to the foot
+  };
+  [[nodiscard]] Approach approach(const Vector<3> &x, const FeatureSet &among) const;
   [[nodiscard]] Nearest on_piece(const Vector<3> &x, Index piece) const;
   [[nodiscard]] Nearest nearest(const Vector<3> &x, Index start,
                                 const FeatureSet &among) const;
@@ -79,8 +94,13 @@ public:
   }
   [[nodiscard]] std::size_t n_patches() const { return n_patches_; }
   [[nodiscard]] std::size_t n_curves() const { return n_curves_; }
-  [[nodiscard]] double distance_to_ridges(const Vector<3> &x) const;
+  /// @param among the curves that count
+  [[nodiscard]] double distance_to_ridges(const Vector<3> &x,
+                                          const FeatureSet &among) const;
+  /// Those of the ridges without a tag; their segments are the pieces.
+  [[nodiscard]] const RidgeChains &chains() const { return chains_; }
   [[nodiscard]] const Jets &jets() const { return jets_; }
+  [[nodiscard]] const std::vector<RidgeSegment> &segments() const { return segments_; }
 
 private:
   /// Ridges that an angle made carry no tag of their own.
@@ -88,6 +108,8 @@ private:
   using Tagged = std::vector<std::pair<Index, CurvedPieces>>;
   Tagged surfaces_, ridges_;
   Jets jets_;
+  std::vector<RidgeSegment> segments_;
+  RidgeChains chains_;
   std::size_t n_patches_ = 0, n_curves_ = 0;
 
   [[nodiscard]] static const CurvedPieces *find(const Tagged &all, Index tag);

@@ -29,16 +29,14 @@ struct Ridge {
 
 class Classifier {
 public:
-  Classifier(const SurfaceInput &input,
-             const std::function<bool(Index, Index)> &has_ridge_at)
-      : in_(input), has_ridge_at_(has_ridge_at),
-        cosine_(elementary::sine_cosine(input.ridge_angle * std::numbers::pi / 180)
-                    .cosine) {}
+  Classifier(const SurfaceInput &input, const RidgeChoice &choose)
+      : in_(input), choose_(choose) {}
 
   Features run() {
     collect_sides();
     find_given();
     find_ridges();
+    choose_sharp_folds();
     make_patches();
     classify_points();
     make_curves();
@@ -47,14 +45,12 @@ public:
 
 private:
   const SurfaceInput &in_;
-  const std::function<bool(Index, Index)> &has_ridge_at_;
-  double cosine_;
+  const RidgeChoice &choose_;
   Features out_;
   std::vector<Side> sides_;
   std::vector<std::pair<std::array<Index, 2>, Index>> given_;
   std::vector<Ridge> ridges_;
-  std::vector<std::pair<std::size_t, std::size_t>>
-      smooth_;                                     ///< facets joined by an edge
+  std::vector<Fold> folds_; ///< and ridges, until the sharp ones are chosen
   std::vector<std::vector<std::size_t>> at_point_; ///< ridges at a point
 
   [[nodiscard]] const Vector<3> &point(Index v) const {
@@ -85,15 +81,21 @@ private:
                      [](const auto &a, const auto &b) { return a.first < b.first; });
   }
 
-  [[nodiscard]] bool is_sharp(std::span<const Side> group) const {
-    if (group.size() != 2)
-      return true;
-    if (in_.facet_tags[group[0].facet] != in_.facet_tags[group[1].facet])
-      return true;
+  /// Whether the surface goes through an edge, as far as angles do not matter.
+  [[nodiscard]] bool is_fold(std::span<const Side> group) const {
+    return group.size() == 2 &&
+           in_.facet_tags[group[0].facet] == in_.facet_tags[group[1].facet];
+  }
+  [[nodiscard]] Fold fold_of(std::span<const Side> group) const {
     const Vector<3> m = normal(group[0].facet), n = normal(group[1].facet);
     const double sign = group[0].is_forward == group[1].is_forward ? -1 : 1;
-    return sign * m.dot(n) <= cosine_ * m.norm() * n.norm() &&
-           (!has_ridge_at_ || has_ridge_at_(group[0].low, group[0].high));
+    return {{group[0].low, group[0].high},
+            {group[0].facet, group[1].facet},
+            turn_between(m, sign * n)};
+  }
+  /// In degrees.
+  static double turn_between(const Vector<3> &u, const Vector<3> &v) {
+    return elementary::angle_of(u.cross(v).norm(), u.dot(v)) * (180 / std::numbers::pi);
   }
 
   void find_ridges() {
@@ -120,8 +122,8 @@ private:
       const std::array<Index, 2> ends{group[0].low, group[0].high};
       Index tag = 0;
       const bool is_given = take_given(ends, tag);
-      if (!is_given && !is_sharp(group)) {
-        smooth_.emplace_back(group[0].facet, group[1].facet);
+      if (!is_given && is_fold(group)) {
+        folds_.push_back(fold_of(group));
         continue;
       }
       Ridge ridge{ends, tag, is_given, {}};
@@ -133,13 +135,45 @@ private:
     take_given({std::numeric_limits<Index>::max(), 0}, unused);
   }
 
+  /// The other folds join their facets to patches, and to the sides of ridges.
+  void choose_sharp_folds() {
+    std::vector<std::array<Index, 2>> others;
+    for (const Ridge &ridge : ridges_)
+      others.push_back(ridge.ends);
+    std::vector<bool> is_sharp = sharp_folds(in_, folds_, others);
+    if (choose_)
+      is_sharp = choose_(folds_, others, std::move(is_sharp));
+    DisjointSets patches(in_.facets.size()), sides(3 * in_.facets.size());
+    for (std::size_t k = 0; k < folds_.size(); ++k) {
+      const auto [ends, facets, turn] = folds_[k];
+      if (is_sharp[k]) {
+        ridges_.push_back({ends, 0, false, {}});
+        for (std::size_t f : facets)
+          ridges_.back().patches.push_back(static_cast<Index>(f));
+        continue;
+      }
+      patches.join(facets[0], facets[1]);
+      for (Index v : ends)
+        sides.join(corner_of(facets[0], v), corner_of(facets[1], v));
+    }
+    std::sort(ridges_.begin(), ridges_.end(),
+              [](const Ridge &a, const Ridge &b) { return a.ends < b.ends; });
+    std::size_t n_patches = 0;
+    out_.facet_patch = patches.numbers(n_patches);
+    out_.patches.resize(n_patches);
+    out_.facet_sides.resize(in_.facets.size());
+    const std::vector<Index> side = sides.numbers(out_.n_sides);
+    for (std::size_t f = 0; f < in_.facets.size(); ++f)
+      for (std::size_t i = 0; i < 3; ++i)
+        out_.facet_sides[f][i] = side[3 * f + i];
+  }
+  [[nodiscard]] std::size_t corner_of(std::size_t f, Index v) const {
+    const Facet<3> &t = in_.facets[f];
+    return 3 * f + (t[0] == v ? 0 : t[1] == v ? 1 : 2);
+  }
+
   void make_patches() {
-    DisjointSets sets(in_.facets.size());
-    for (const auto &[f, g] : smooth_)
-      sets.join(f, g);
-    std::size_t n = 0;
-    out_.facet_patch = sets.numbers(n);
-    out_.patches.resize(n);
+    const std::size_t n = out_.patches.size();
     std::vector<double> largest(n, -1);
     std::vector<Box<3>> box(n);
     const auto patch_of = [&](std::size_t f) {
@@ -254,8 +288,7 @@ private:
     const auto leg = [&](const Ridge &ridge) -> Vector<3> {
       return point(ridge.ends[ridge.ends[0] == v ? 1 : 0]) - point(v);
     };
-    const Vector<3> a = leg(r), b = leg(s);
-    return -a.dot(b) > cosine_ * a.norm() * b.norm();
+    return turn_between(-leg(r), leg(s)) < in_.shape.sharp_turn();
   }
 
   void make_curves() {
@@ -306,9 +339,8 @@ private:
 
 } // namespace
 
-Features find_features(const SurfaceInput &input,
-                       const std::function<bool(Index, Index)> &has_ridge_at) {
-  return Classifier(input, has_ridge_at).run();
+Features find_features(const SurfaceInput &input, const RidgeChoice &choose) {
+  return Classifier(input, choose).run();
 }
 
 } // namespace anistar

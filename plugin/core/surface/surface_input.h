@@ -3,6 +3,7 @@
 
 #include "base/tensor.h"
 #include "mesh/adjacency.h"
+#include "remesh/domain_shape.h"
 
 #include <span>
 
@@ -17,7 +18,7 @@ struct SurfaceInput {
   std::span<const Index> edge_tags;
   std::span<const Index> corners;
   std::span<const Index> frozen_tags; ///< facets with these stay as they are
-  double ridge_angle = 45;            ///< degrees
+  DomainShape shape;
 };
 
 /// A smooth piece of surface with one tag.

@@ -1,6 +1,6 @@
 #include "volume/start.h"
 
-#include "surface/smooth_surface.h"
+#include "surface/matched_ridges.h"
 
 #include <stdexcept>
 #include <string>
@@ -8,9 +8,8 @@
 namespace anistar {
 namespace {
 
-/// An edge where the mesh turns sharply is a ridge if the geometry has one this near,
-/// relative to its length: a surface may be sampled too badly to tell by itself.
-constexpr double farthest_ridge = .25;
+/// Where nothing turns by more (degrees) there is no ridge to be found.
+constexpr double flat_turn = 1e-6;
 
 /// Finds the patch of a facet by its vertices.
 class PatchTable {
@@ -147,14 +146,17 @@ void freeze_touching(Volume &volume) {
 Volume make_volume(const VolumeInput &input, std::span<const SymmetricTensor<3>> metric,
                    const Background<3> &background, const SurfaceInput &geometry,
                    SurfaceProjection projection) {
-  std::optional<SmoothSurface> smooth; // made when it is asked
-  const Features features = find_features(input.surface, [&](Index a, Index b) {
-    if (!smooth)
-      smooth.emplace(geometry);
-    const Vector<3> &x = input.surface.points[static_cast<std::size_t>(a)],
-                    &y = input.surface.points[static_cast<std::size_t>(b)];
-    return smooth->distance_to_ridges(.5 * (x + y)) <= farthest_ridge * (y - x).norm();
-  });
+  const Features features = find_features(
+      input.surface,
+      [&](std::span<const Fold> folds, const auto &others,
+          std::vector<bool> is_sharp) -> std::vector<bool> {
+        const bool is_flat =
+            std::all_of(folds.begin(), folds.end(),
+                        [](const Fold &fold) { return fold.turn < flat_turn; });
+        return is_flat ? is_sharp
+                       : matched_ridges(SmoothSurface(geometry), input.surface.points,
+                                        folds, others, is_sharp);
+      });
   Volume volume(background, SurfaceShape(features.patches, features.curves, geometry,
                                          std::move(projection)));
   volume.surface.match(input.surface, features);
