@@ -97,6 +97,11 @@ def remesh(
     """
     options = RemeshOptions() if options is None else options
     require(RemeshOptions, options=options)
+    if options.shape == "polyhedron" and project is not None:
+        raise ValueError(
+            'project moves points off the facets, which are the domain with shape="polyhedron": '
+            "leave one of the two out"
+        )
     geometry = mesh if geometry is None else geometry
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     if geometry.dim != mesh.dim:

@@ -45,6 +45,12 @@ class RemeshOptions:
         more. None takes every metric as it is.
     frozen_tags : sequence of int
         Facets with these tags are kept as they are.
+    shape : "smooth" or "polyhedron"
+        What the facets of the geometry mean. "smooth": samples of smooth curves and surfaces,
+        on which new points are placed. "polyhedron": they are the domain. Every point (in 3D:
+        every edge) where they turn at all is a corner (a ridge), so that area and volume stay
+        as they are to round-off; `ridge_angle` and `hausdorff_number` have nothing to decide, and
+        `project` is refused.
     ridge_angle : float
         Degrees; a smooth boundary has a corner (in 3D: a ridge) where it turns by at least this.
         In 3D a ridge whose angle falls below goes on as long as it turns clearly more than the
@@ -77,6 +83,7 @@ class RemeshOptions:
     max_memory: float | None = None
     max_refinement: float | Literal["auto"] | None = "auto"
     frozen_tags: Sequence[int] = ()
+    shape: Literal["smooth", "polyhedron"] = "smooth"
     ridge_angle: float = 45.0
     hausdorff_number: float = 0.1
     agreement: bool | Literal["auto"] = "auto"
@@ -101,6 +108,8 @@ class RemeshOptions:
             raise ValueError(f"max_memory must be positive, got {self.max_memory}")
         if self.max_refinement is not None:
             check_refinement("max_refinement", self.max_refinement)
+        if self.shape not in ("smooth", "polyhedron"):
+            raise ValueError(f'shape must be "smooth" or "polyhedron", got {self.shape!r}')
         if not 0 < self.ridge_angle <= 180:
             raise ValueError(f"ridge_angle must be in (0, 180] degrees, got {self.ridge_angle}")
         if not 0 < self.hausdorff_number <= 1:
@@ -118,7 +127,7 @@ class RemeshOptions:
 
     def as_shape(self) -> dict[str, Any]:
         """Return what the core is told about the facets of the geometry."""
-        return {"kind": "smooth", "ridge_angle": self.ridge_angle}
+        return {"kind": self.shape, "ridge_angle": self.ridge_angle}
 
     def as_settings(self) -> dict[str, Any]:
         """Return what the core is told in 2D and in 3D, where a bound that is off is infinite."""

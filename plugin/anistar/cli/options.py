@@ -127,6 +127,11 @@ _REMESH: dict[str, tuple[Any, str]] = {
         float,
         "largest distance from a curved boundary, relative to the size (Mmg: -hausd)",
     ),
+    "shape": (
+        str,
+        "smooth (default): the facets sample smooth curves and surfaces; "
+        "polyhedron: they are the domain",
+    ),
     "ridge_angle": (float, "angle in degrees from which a corner is kept (Mmg: -ar)"),
     "max_vertices": (int, "stop at this number of vertices"),
     "max_seconds": (float, "stop after this time"),
