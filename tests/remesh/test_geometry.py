@@ -148,7 +148,7 @@ def test_points_of_the_geometry_are_not_where_new_points_must_be():
     geometry = fan(on_clover(angles(200)))
     done = remesh(geometry, uniform(geometry, 0.2))
     assert validate(done.mesh, geometry, tolerance=0.05) == []
-    assert done.mesh.n_facets < 60
+    assert done.mesh.n_facets < 90
     assert off_clover(curve_points(done.mesh)).max() < 1e-5
 
 
@@ -250,7 +250,7 @@ def test_sharp_corners_are_meshed(degrees):
 
 
 @pytest.mark.parametrize(
-    ("make", "fewest"), [(square, 4), (two_regions, 6), (slit, 6), (l_shape, 6), (annulus, 24)]
+    ("make", "fewest"), [(square, 4), (two_regions, 6), (slit, 6), (l_shape, 6), (annulus, 96)]
 )
 def test_a_metric_that_asks_for_nothing_leaves_what_the_shape_needs(make, fewest):
     mesh = make(4)

@@ -153,7 +153,8 @@ def bulging_wedge(n=40, corners=()):
 
 def test_a_ball_whose_leg_has_to_follow_its_arc_is_given_up_and_counted():
     whole, crowded = bulging_wedge(), bulging_wedge(corners=[8])
-    free, cut = (anistar.remesh(mesh, uniform(mesh, 0.5)) for mesh in (whole, crowded))
+    options = anistar.RemeshOptions(hausdorff_number=0.1)
+    free, cut = (anistar.remesh(mesh, uniform(mesh, 0.5), options) for mesh in (whole, crowded))
     for done in (free, cut):
         assert anistar.validate(done.mesh) == []
     assert free.report.counts["protected_corners"] == 1

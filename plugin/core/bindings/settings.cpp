@@ -43,7 +43,8 @@ namespace {
 
 RemeshSettings settings_of(const nb::dict &given) {
   RemeshSettings out;
-  out.hausdorff_number = nb::cast<double>(given["hausdorff_number"]);
+  out.hausdorff = {nb::cast<double>(given["curve_hausdorff_number"]),
+                   nb::cast<double>(given["surface_hausdorff_number"])};
   out.max_vertices = nb::cast<std::size_t>(given["max_vertices"]);
   out.max_seconds = nb::cast<double>(given["max_seconds"]);
   out.agreement = agreement_mode(nb::cast<std::string>(given["agreement"]));

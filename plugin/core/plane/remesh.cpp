@@ -198,12 +198,12 @@ RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &inp
   const Projection project = timed(projection, monitor);
   Geometry geometry = make_geometry(input, &project);
   Start start =
-      make_start(geometry, background, settings.hausdorff_number, monitor, watch);
+      make_start(geometry, background, settings.hausdorff.curve, monitor, watch);
   const std::size_t n_protected = count_balls(start.mesh.curve_edges);
   out.counts["protected_corners"] = static_cast<double>(n_protected);
   out.counts["unprotected_corners"] =
       static_cast<double>(start.n_sharp_corners - n_protected);
-  Workspace w{start.mesh, geometry, background, settings.hausdorff_number};
+  Workspace w{start.mesh, geometry, background, settings.hausdorff.curve};
   Legaliser legaliser(w.mesh);
   // the pure mode starts from the boundary alone
   const bool is_pure = settings.consistency == ConsistencyMode::pure;

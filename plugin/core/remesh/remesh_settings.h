@@ -10,8 +10,13 @@ namespace anistar {
 /// follow.
 enum class AgreementMode { off, when_possible, on };
 
+/// Largest distances of curves and of surfaces from an edge, relative to its length.
+struct HausdorffNumbers {
+  double curve, surface;
+};
+
 struct RemeshSettings {
-  double hausdorff_number = .1; ///< of an edge, relative to its length
+  HausdorffNumbers hausdorff{};
   std::size_t max_vertices = static_cast<std::size_t>(-1);
   double max_seconds = std::numeric_limits<double>::infinity();
   AgreementMode agreement = AgreementMode::when_possible;

@@ -2,6 +2,7 @@
 // The passes over a volume mesh: split, swap, the vertex pass, and repair.
 
 #include "base/monitor.h"
+#include "remesh/remesh_settings.h"
 #include "volume/cavity_operator.h"
 #include "volume/densest_shapes.h"
 #include "volume/vertex_star.h"
@@ -41,10 +42,11 @@ struct VertexRule {
 /// Everything the passes share.
 class VolumePasses {
 public:
-  VolumePasses(Volume &volume, Monitor &monitor, double hausdorff_number,
+  VolumePasses(Volume &volume, Monitor &monitor, const HausdorffNumbers &hausdorff,
                std::uint64_t seed, int threads = 1)
       : volume_(volume), operator_(volume), monitor_(monitor),
-        hausdorff_number_(hausdorff_number), seed_(seed), threads_(threads) {}
+        hausdorff_number_(hausdorff.surface), ridge_hausdorff_number_(hausdorff.curve),
+        seed_(seed), threads_(threads) {}
 
   /// Splits the longest edge of every cell that is too long, and edges that stray from
   /// their curved surface or ridge; @returns how many.
@@ -76,7 +78,8 @@ private:
   Volume &volume_;
   CavityOperator operator_;
   Monitor &monitor_;
-  double hausdorff_number_; ///< of curved surfaces and ridges, relative to an edge
+  double hausdorff_number_;       ///< of curved surfaces, relative to an edge
+  double ridge_hausdorff_number_; ///< and of ridges
   std::uint64_t seed_;
   int threads_;
   VolumeCounts counts_;

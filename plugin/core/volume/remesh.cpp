@@ -175,7 +175,7 @@ void agree(Volume &volume, Monitor &monitor, const RemeshSettings &settings,
   if (!out.agreement.empty())
     return;
   const VolumeAgreementCounts agreed = agree_volume(
-      volume, monitor, settings.hausdorff_number, settings.seed, settings.threads);
+      volume, monitor, settings.hausdorff.surface, settings.seed, settings.threads);
   renumber(volume, settings.threads);
   out.agreement = "done";
   if (agreed.facets_after > 0)
@@ -252,11 +252,11 @@ void certify_stars(Volume &volume, Monitor &monitor, const RemeshSettings &setti
   out.counts["star_failures"] =
       static_cast<double>(failing_cells(volume.mesh, known.bits).size());
   out.counts["star_moves"] = static_cast<double>(
-      mend_stars(volume, monitor, settings.hausdorff_number, settings.seed, known));
+      mend_stars(volume, monitor, settings.hausdorff.surface, settings.seed, known));
   if (inserting) {
     watch.phase("consistency");
     out.consistency = refine_until_consistent(volume, monitor, settings.parameters,
-                                              settings.hausdorff_number, settings.seed,
+                                              settings.hausdorff.surface, settings.seed,
                                               settings.threads, known);
     out.counts["consistency_moves"] = static_cast<double>(out.consistency.moves);
   }
@@ -294,7 +294,7 @@ VolumeResult remesh_volume(const VolumeInput &input,
                                    settings.threads);
     Volume volume = make_volume(input, metric, background, geometry,
                                 timed(std::move(projection), monitor));
-    VolumePasses passes(volume, monitor, settings.hausdorff_number, settings.seed,
+    VolumePasses passes(volume, monitor, settings.hausdorff, settings.seed,
                         settings.threads);
     watch.phase("size");
     grow(volume, passes, settings.threads);

@@ -104,7 +104,7 @@ std::size_t VolumePasses::split(const SplitRule &rule) {
 
 bool VolumePasses::is_off_curve(Index curve, const Vertex<3> &a,
                                 const Vertex<3> &b) const {
-  return volume_.surface.strays(1, curve, a, b, hausdorff_number_);
+  return volume_.surface.strays(1, curve, a, b, ridge_hausdorff_number_);
 }
 
 std::size_t VolumePasses::follow_surfaces() {

@@ -15,7 +15,8 @@ struct VolumePasses::Helper {
 
   explicit Helper(VolumePasses &first)
       : view(first.volume_.data),
-        passes(view, first.monitor_, first.hausdorff_number_, first.seed_) {}
+        passes(view, first.monitor_,
+               {first.ridge_hausdorff_number_, first.hausdorff_number_}, first.seed_) {}
 };
 
 /// Gives the cells that are free to the slabs, for `n_items[k]` items each. The arrays
