@@ -14,6 +14,7 @@ from pathlib import Path
 
 from . import gmsh2, gmsh4
 from .allowance import Allowance
+from .entity_borders import keep_borders
 from .gmsh_data import (
     Data,
     Note,
@@ -139,4 +140,5 @@ def _raw(content: _Content) -> RawMesh:
         add_node_data(raw, nodes, data, content.allowance)
     for data in last_steps(content.data.get("ElementData", []), raw.warnings):
         add_element_data(raw, runs, data, content.allowance)
+    keep_borders(raw, [run.entity for run in runs])
     return raw
