@@ -87,18 +87,12 @@ private:
     std::vector<std::size_t> length(weak.size(), 0);
     for (std::size_t i = 0; i < weak.size(); ++i)
       for (Index v : folds_[weak[i]].ends)
-        length[chains.root(i)] += is_on_ridge(v) ? 1 + 2 * worth_of_end : 1;
+        length[chains.root(i)] += is_joined(weak[i], v) ? 1 + 2 * worth_of_end : 1;
     std::erase_if(weak, [&, i = std::size_t{0}](std::size_t) mutable {
       return length[chains.root(i++)] < 2 * shortest_chain;
     });
     for (std::size_t k : weak)
       start_at(k);
-  }
-  [[nodiscard]] bool is_on_ridge(Index v) const {
-    const auto &here = folds_at_[static_cast<std::size_t>(v)];
-    return !others_at_[static_cast<std::size_t>(v)].empty() ||
-           std::any_of(here.begin(), here.end(),
-                       [&](std::size_t k) { return is_sharp_[k]; });
   }
 
   void collect() {
@@ -125,8 +119,8 @@ private:
       ends_.pop_back();
       const Index from = folds_[end.fold].ends[1 - end.side],
                   at = folds_[end.fold].ends[end.side];
-      if (goes_on(from, at))
-        continue;
+      if (goes_on(from, at) || !is_joined(end.fold, from))
+        continue; // sharp folds by themselves, as a scan has many, lead nowhere
       std::size_t best = folds_.size();
       for (std::size_t k : folds_at_[static_cast<std::size_t>(at)])
         if (is_straight_on(from, at, far_end(k, at)) && stands_out(k, standing_out) &&
@@ -137,6 +131,15 @@ private:
       is_sharp_[best] = true;
       ends_.push_back({best, folds_[best].ends[0] == at ? 1u : 0u});
     }
+  }
+
+  /// Whether a fold meets another ridge at this end.
+  [[nodiscard]] bool is_joined(std::size_t k, Index v) const {
+    const auto &here = folds_at_[static_cast<std::size_t>(v)];
+    return !others_at_[static_cast<std::size_t>(v)].empty() ||
+           std::any_of(here.begin(), here.end(), [&](std::size_t other) {
+             return other != k && is_sharp_[other];
+           });
   }
 
   [[nodiscard]] Index far_end(std::size_t k, Index v) const {
