@@ -15,6 +15,7 @@ import anistar
 from anistar import Field, read, validate, write
 from anistar.cli import main
 from anistar.formats import read_metric, write_metric
+from anistar.topology import cell_volumes
 
 
 def run(words, *more):
@@ -134,6 +135,21 @@ def test_a_curvature_metric_is_intersected_when_asked(tmp_path, monkeypatch, cap
     assert len(np.unique(fine.facets)) > 1.5 * len(np.unique(plain.facets))
     assert depth(fine) < 0.025
     assert depth(plain) > 0.05
+
+
+def test_a_coarse_body_keeps_its_volume_as_a_polyhedron_only(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mesh = ball(2)
+    write("ball.mesh", mesh)
+    write_metric("size.vtu", mesh, np.tile(np.eye(3) / 0.3**2, (mesh.n_points, 1, 1)))
+    volume = {}
+    for shape in ("polyhedron", "smooth"):
+        assert run(f"remesh ball.mesh --metric size.vtu --shape {shape} -o {shape}.vtu") == 0
+        new = read(f"{shape}.vtu")[0]
+        volume[shape] = cell_volumes(new.points, new.cells).sum()
+    given = cell_volumes(mesh.points, mesh.cells).sum()
+    assert volume["polyhedron"] == pytest.approx(given, rel=1e-13)
+    assert volume["smooth"] > 1.02 * given
 
 
 def depth(mesh):
