@@ -150,7 +150,7 @@ def smooth_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape | None:
             *facets,
             geometry.corners,
             frozen,
-            options.ridge_angle,
+            options.as_shape(),
         )
     else:
         measure, bulge, sag, edge_length = _core.facet_shapes3(
@@ -160,7 +160,7 @@ def smooth_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape | None:
             geometry.edge_tags,
             geometry.corners,
             frozen,
-            options.ridge_angle,
+            options.as_shape(),
         )
     if not (sag.any() or bulge.any()):
         return None

@@ -1,6 +1,7 @@
 #include "plane/facet_shapes.h"
 #include "bind.h"
 #include "geometry.h"
+#include "settings.h"
 #include "surface/facet_shapes.h"
 
 #include <nanobind/stl/tuple.h>
@@ -19,22 +20,22 @@ auto as_arrays(FacetShapes &&shapes) {
 auto shapes2(const Array2<double> &points, const Array2<Index> &cells,
              const Array1<Index> &cell_tags, const Array2<Index> &facets,
              const Array1<Index> &facet_tags, const Array1<Index> &corners,
-             const Array1<Index> &frozen_tags, double ridge_angle) {
+             const Array1<Index> &frozen_tags, const nb::dict &shape) {
   const GeometryInput input{points_of<2>(points),    cells_of<2>(cells),
                             indices_of(cell_tags),   facets_of<2>(facets),
                             indices_of(facet_tags),  indices_of(corners),
-                            indices_of(frozen_tags), ridge_angle};
+                            indices_of(frozen_tags), shape_of(shape)};
   return as_arrays(facet_shapes(input));
 }
 
 auto shapes3(const Array2<double> &points, const Array2<Index> &facets,
              const Array1<Index> &facet_tags, const Array2<Index> &edges,
              const Array1<Index> &edge_tags, const Array1<Index> &corners,
-             const Array1<Index> &frozen_tags, double ridge_angle) {
+             const Array1<Index> &frozen_tags, const nb::dict &shape) {
   const SurfaceInput input{points_of<3>(points),    facets_of<3>(facets),
                            indices_of(facet_tags),  pairs_of(edges),
                            indices_of(edge_tags),   indices_of(corners),
-                           indices_of(frozen_tags), ridge_angle};
+                           indices_of(frozen_tags), shape_of(shape)};
   return as_arrays(facet_shapes(input));
 }
 
@@ -49,12 +50,12 @@ void bind_facet_shapes(nb::module_ &module) {
              nb::arg("cells").noconvert(), nb::arg("cell_tags").noconvert(),
              nb::arg("facets").noconvert(), nb::arg("facet_tags").noconvert(),
              nb::arg("corners").noconvert(), nb::arg("frozen_tags").noconvert(),
-             nb::arg("ridge_angle"), text);
+             nb::arg("shape"), text);
   module.def("facet_shapes3", &shapes3, nb::arg("points").noconvert(),
              nb::arg("facets").noconvert(), nb::arg("facet_tags").noconvert(),
              nb::arg("edges").noconvert(), nb::arg("edge_tags").noconvert(),
              nb::arg("corners").noconvert(), nb::arg("frozen_tags").noconvert(),
-             nb::arg("ridge_angle"), text);
+             nb::arg("shape"), text);
 }
 
 } // namespace anistar::bindings
