@@ -1,4 +1,4 @@
-"""The cells that a remesher had to leave nearly flat, by name."""
+"""The cells that a remesher had to leave worse than it should, by name."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from .mesh import Mesh
 from .quality import mean_ratios
 
-#: Mean ratio in the metric below which a cell is named.
+#: Mean ratio in the metric below which a cell is named in any case.
 BAD_QUALITY = 1e-3
 _MOST_NAMED = 10
+# Cells are compared in single precision.
+_KEPT_PART = 0.999
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,6 +34,11 @@ class BadCell:
     cell: int
     quality: float
     place: Sequence[float]
+
+
+def quality_bound(kept: float) -> float:
+    """Return below what cells are named where the mean ratio `kept` was to be kept."""
+    return max(BAD_QUALITY, _KEPT_PART * kept)
 
 
 def worst_cells(

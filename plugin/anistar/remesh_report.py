@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from .bad_cells import BAD_QUALITY, BadCell, worst_cells
+from .bad_cells import BadCell, quality_bound, worst_cells
 from .fidelity import SurfaceDeviation, TagMeasure, shape_warnings
+from .long_edges import LONG_EDGE, LongEdge, longest_edges
 from .mesh import Mesh
 
 
@@ -32,10 +33,16 @@ class RemeshReport:
         ``edge_unit`` (fraction of edges within [1/sqrt 2, sqrt 2]), ``edge_min``, ``edge_mean``,
         ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
         ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
+    kept_quality : float
+        Least mean ratio of the input in the given metric, but .2 at most: no cell of the new mesh
+        should be worse.
     n_bad_cells : int
-        Cells whose mean ratio is below 1e-3: what no operation could improve.
+        Cells whose mean ratio is below `kept_quality`, or below 1e-3: what no operation could
+        improve.
     bad_cells : tuple of BadCell
         The worst of them, ten at most: row, quality and place.
+    long_edges : tuple of LongEdge
+        Edges longer than 2 in the metric, the ten longest at most: ends, length and place.
     agreement : str
         ``done``, ``off``, or ``skipped:`` and why; in 3D also what was left when it stalled.
     consistency : dict
@@ -75,8 +82,10 @@ class RemeshReport:
     n_points: int
     n_cells: int
     statistics: dict[str, Any]
+    kept_quality: float
     n_bad_cells: int
     bad_cells: tuple[BadCell, ...]
+    long_edges: tuple[LongEdge, ...]
     agreement: str
     consistency: dict[str, Any]
     simplex_ok: float | None
@@ -94,6 +103,7 @@ class RemeshReport:
         out["tags"] = [tag.as_dict() for tag in self.tags]
         out["deviations"] = [it.as_dict() for it in self.deviations]
         out["warnings"] = list(self.warnings)
+        out["long_edges"] = [edge.as_dict() for edge in self.long_edges]
         out["bad_cells"] = [{**asdict(bad), "place": list(bad.place)} for bad in self.bad_cells]
         return out
 
@@ -107,8 +117,10 @@ def report_of(
     """Return the report on what the core returned, and on its shape beside the geometry."""
     n_bad: int = 0
     bad: tuple[BadCell, ...] = ()
-    if not raw["statistics"]["q_min"] >= BAD_QUALITY:
-        n_bad, bad = worst_cells(new, raw["metric"])
+    bound = quality_bound(raw["kept_quality"])
+    if not raw["statistics"]["q_min"] >= bound:
+        n_bad, bad = worst_cells(new, raw["metric"], bound)
+    is_long = raw["statistics"]["edge_max"] > LONG_EDGE
     return RemeshReport(
         converged=raw["stop_reason"] == "finished"
         and raw["consistency"]["stop_reason"] in ("", "consistent"),
@@ -117,8 +129,10 @@ def report_of(
         n_points=new.n_points,
         n_cells=new.n_cells,
         statistics=raw["statistics"],
+        kept_quality=raw["kept_quality"],
         n_bad_cells=n_bad,
         bad_cells=bad,
+        long_edges=longest_edges(new, raw["metric"]) if is_long else (),
         agreement=raw["agreement"],
         consistency=raw["consistency"],
         simplex_ok=raw["simplex_ok"],

@@ -85,6 +85,7 @@ template <std::size_t d> nb::dict as_dict(const RemeshResult<d> &result) {
   out["consistency"] = as_dict(result.consistency);
   out["distortion"] = as_dict(result.distortion);
   out["statistics"] = as_dict(result.statistics);
+  out["kept_quality"] = result.kept_quality;
   out["counts"] = result.counts;
   out["seconds"] = result.seconds;
   out["stop_reason"] = name_of(result.reason);

@@ -69,6 +69,16 @@ public:
     return make_vertex<d>(x, metric(x, cell));
   }
 
+  /// The points of the given mesh, as vertices with their metric.
+  [[nodiscard]] std::vector<Vertex<d>> vertices(int threads) const {
+    std::vector<Vertex<d>> out(logarithm_.size());
+    parallel_ranges(out.size(), threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v)
+        out[v] = make_vertex<d>(locator_.points()[v], definite_exp<d>(logarithm_[v]));
+    });
+    return out;
+  }
+
   [[nodiscard]] const Locator<d> &locator() const { return locator_; }
 
 private:

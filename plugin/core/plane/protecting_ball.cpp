@@ -112,6 +112,15 @@ bool ProtectingBall::drops(int least) const {
   return count_disagreeing() <= disagreeing_before_ - least;
 }
 
+bool ProtectingBall::raises_quality() const {
+  double before = 1, after = 1;
+  for (const Leg &leg : legs_) {
+    before = std::min(before, leg.before.quality);
+    after = std::min(after, leg.relocation.score().quality);
+  }
+  return after > before;
+}
+
 void ProtectingBall::undo() { put_back(legs_.size()); }
 
 void ProtectingBall::put_back(std::size_t n_legs) {

@@ -24,6 +24,8 @@ public:
   /// Whether the number of disagreeing edges is lower by `least` than before, within
   /// the bounds of a relocation.
   [[nodiscard]] bool drops(int least) const;
+  /// Whether the worst cell at the shell is better than before.
+  [[nodiscard]] bool raises_quality() const;
   void undo();
   void commit() const;
   [[nodiscard]] const std::vector<Index> &shell() const { return shell_; }

@@ -1,11 +1,13 @@
 #include "plane/remesh.h"
 
 #include "base/stopwatch.h"
+#include "plane/bisection.h"
 #include "plane/consistency.h"
 #include "plane/outline.h"
 #include "plane/refine.h"
 #include "plane/shape.h"
 #include "plane/start.h"
+#include "remesh/kept_quality.h"
 
 namespace anistar {
 namespace {
@@ -22,6 +24,11 @@ constexpr Round schedule[] = {{3, 0, .68, 1.45}, {3, 0, .70, 1.42}, {3, 2, 0, 0}
 /// Outliers of the last sweeps: edges beyond these, cells below this quality.
 constexpr double shortest_outlier = .5, longest_outlier = 1.55;
 constexpr double repair_floor = .5;
+
+/// Cells below this are split where their edges, near to unit length as they are, make
+/// them no better: around a corner that asks for a size far from that of its
+/// neighbours.
+constexpr double steep_floor = .35;
 
 /// Agreement was reached, but for a few stars, on every metric tried whose ln gamma
 /// stays below this on 99 % of the unit edges; above it, it leaves more and more
@@ -92,7 +99,7 @@ Start make_start(Geometry &geometry, const Background<2> &background, double hau
 }
 
 void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
-           std::map<std::string, double> &counts) {
+           const QualityFloor &floor, std::map<std::string, double> &counts) {
   const auto control = [&](double shortest, double longest) {
     const LengthCounts done =
         control_lengths(w, legaliser, monitor, shortest, longest, threads);
@@ -110,13 +117,16 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
     }
   }
   control(shortest_outlier, longest_outlier);
-  counts["poor"] = static_cast<double>(repair(w, monitor, repair_floor, threads));
+  counts["poor"] =
+      static_cast<double>(repair(w, monitor, {{repair_floor, repair_floor}}, threads));
+  counts["bisections"] =
+      static_cast<double>(bisect(w, legaliser, monitor, floor, threads));
 }
 
 /// Phases 4 and 5, as far as the metric and the settings let them.
 void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                   const RemeshSettings &settings, Stopwatch &watch,
-                   RemeshResult<2> &out) {
+                   const RemeshSettings &settings, const QualityFloor &floor,
+                   Stopwatch &watch, RemeshResult<2> &out) {
   watch.phase("agreement");
   out.distortion =
       distortion_quantiles(w.mesh.vertices, w.mesh.cells, settings.threads);
@@ -138,6 +148,9 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
   if (agreeing) {
     const AgreementCounts agreed =
         agree(w, legaliser, monitor, settings.seed, settings.threads);
+    // the flips after a move mind no quality
+    out.counts["bisections"] +=
+        static_cast<double>(bisect(w, legaliser, monitor, floor, settings.threads));
     renumber(w, settings.threads);
     out.counts["disagreeing_before"] = static_cast<double>(agreed.edges_before);
     out.counts["disagreeing_after"] = static_cast<double>(agreed.edges_after);
@@ -205,6 +218,9 @@ RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &inp
       static_cast<double>(start.n_sharp_corners - n_protected);
   Workspace w{start.mesh, geometry, background, settings.hausdorff.curve};
   Legaliser legaliser(w.mesh);
+  out.kept_quality = kept_quality<2>(background.vertices(settings.threads),
+                                     background.locator().cells(), settings.threads);
+  const QualityFloor floor{out.kept_quality, steep_floor};
   // the pure mode starts from the boundary alone
   const bool is_pure = settings.consistency == ConsistencyMode::pure;
   const RefineCounts refined =
@@ -213,10 +229,10 @@ RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &inp
   watch.phase("shape");
   renumber(w, settings.threads);
   if (!is_pure)
-    shape(w, legaliser, monitor, settings.threads, out.counts);
+    shape(w, legaliser, monitor, settings.threads, floor, out.counts);
   renumber(w, settings.threads);
 
-  certify_stars(w, legaliser, monitor, settings, watch, out);
+  certify_stars(w, legaliser, monitor, settings, floor, watch, out);
 
   watch.phase("report");
   out.statistics =

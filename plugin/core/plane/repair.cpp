@@ -1,4 +1,3 @@
-#include "base/parallel.h"
 #include "plane/shape.h"
 
 #include <array>
@@ -31,21 +30,16 @@ struct Score {
     longest = std::max(longest, l);
     shortest = std::min(shortest, l);
   }
-  [[nodiscard]] bool improves(const Score &before) const {
+  [[nodiscard]] bool improves(const Score &before, double least_length) const {
     return worst > before.worst + least_gain &&
            longest <= std::max(longest_edge, before.longest) &&
-           shortest >= std::min(shortest_edge, before.shortest);
+           shortest >= std::min(least_length, before.shortest);
   }
 };
 
 class Repair {
 public:
-  explicit Repair(Workspace &w) : w_(w), mesh_(w.mesh) {}
-
-  [[nodiscard]] double quality_of(Index c) const {
-    const Cell<2> &v = mesh_.at(c);
-    return quality(mesh_.vertex(v[0]), mesh_.vertex(v[1]), mesh_.vertex(v[2]));
-  }
+  Repair(Workspace &w, const RepairRule &rule) : w_(w), mesh_(w.mesh), rule_(rule) {}
 
   /// Tries what raises the worst quality around cell c, simplest first.
   bool improve(Index c) {
@@ -59,9 +53,10 @@ public:
     for (std::size_t i = 0; i < 3; ++i) {
       const double l = w_.length(HalfFacet(c, i));
       const auto [a, b] = mesh_.facet(HalfFacet(c, i));
-      if (l < collapse_below && (collapse(a, b) || collapse(b, a)))
+      if ((rule_.at_any_length || l < collapse_below) &&
+          (collapse(a, b) || collapse(b, a)))
         return true;
-      if (l > split_above && split(HalfFacet(c, i)))
+      if ((rule_.at_any_length || l > split_above) && split(HalfFacet(c, i)))
         return true;
     }
     return false;
@@ -70,13 +65,18 @@ public:
 private:
   Workspace &w_;
   Triangulation<2> &mesh_;
+  RepairRule rule_;
   std::vector<HalfFacet> star_;
   Collapse collapse_{};
+
+  [[nodiscard]] bool improves(const Score &after, const Score &before) const {
+    return after.improves(before, rule_.at_any_length ? 0 : shortest_edge);
+  }
 
   [[nodiscard]] Score score_of(std::span<const Index> cells) const {
     Score score;
     for (Index c : cells) {
-      score.worst = std::min(score.worst, quality_of(c));
+      score.worst = std::min(score.worst, quality_of(mesh_, c));
       for (std::size_t i = 0; i < 3; ++i) {
         const auto [a, b] = mesh_.facet(HalfFacet(c, i));
         score.edge(mesh_.vertex(a), mesh_.vertex(b));
@@ -103,7 +103,7 @@ private:
     if (!bound_swap(mesh_, edge, w_.cavity))
       return false;
     const Index apex = mesh_.apex(edge);
-    if (!score_after(mesh_.vertex(apex)).improves(score_of(w_.cavity.cells())))
+    if (!improves(score_after(mesh_.vertex(apex)), score_of(w_.cavity.cells())))
       return false;
     w_.cavity.fill(apex);
     return true;
@@ -113,7 +113,7 @@ private:
     collapse_.vertex = v;
     collapse_.target = target;
     if (!bound_collapse(w_, collapse_) ||
-        !score_after(mesh_.vertex(target)).improves(score_of(w_.cavity.cells())))
+        !improves(score_after(mesh_.vertex(target)), score_of(w_.cavity.cells())))
       return false;
     fill_collapse(w_, collapse_);
     return true;
@@ -133,7 +133,7 @@ private:
     w_.cavity.add(edge.cell());
     w_.cavity.add(other.cell());
     w_.cavity.bound(none);
-    if (!score_after(middle).improves(score_of(w_.cavity.cells())))
+    if (!improves(score_after(middle), score_of(w_.cavity.cells())))
       return false;
     return split_edge(w_, edge) != none;
   }
@@ -162,13 +162,13 @@ private:
         Index hint = from_cell;
         const Vertex<2> trial = w_.background.vertex(x, hint);
         const Score score = score_of_star(trial);
-        if (score.improves(best_score)) {
+        if (improves(score, best_score)) {
           best = trial;
           best_cell = hint;
           best_score = score;
         }
       }
-    if (!best_score.improves(before))
+    if (!improves(best_score, before))
       return false;
     mesh_.vertex(v) = best;
     mesh_.background_cell[static_cast<std::size_t>(v)] = best_cell;
@@ -195,23 +195,18 @@ private:
 
 } // namespace
 
-std::size_t repair(Workspace &w, Monitor &monitor, double floor, int threads) {
-  Repair operations(w);
+std::size_t repair(Workspace &w, Monitor &monitor, const RepairRule &rule,
+                   int threads) {
+  Repair operations(w, rule);
   std::size_t n_poor = 0;
   bool changed = true;
   for (int round = 0; round < max_rounds && changed; ++round) {
-    const auto is_poor = [&](Index c) {
-      return w.mesh.is_alive(c) && operations.quality_of(c) < floor;
-    };
-    const auto poor = parallel_search<Index>(w.mesh.cells.size(), threads,
-                                             [&](std::size_t c, const auto &add) {
-                                               if (is_poor(static_cast<Index>(c)))
-                                                 add(static_cast<Index>(c));
-                                             });
+    const std::vector<Index> poor = poor_cells(w.mesh, rule.floor, threads);
     n_poor = poor.size();
     changed = false;
     for (Index c : poor)
-      if (monitor.keep_going(w.mesh.vertices.size(), 0) && is_poor(c))
+      if (monitor.keep_going(w.mesh.vertices.size(), 0) && w.mesh.is_alive(c) &&
+          !rule.floor.is_met(w.mesh, c))
         changed = operations.improve(c) || changed;
   }
   return n_poor;

@@ -4,6 +4,7 @@
 #include "base/monitor.h"
 #include "plane/edits.h"
 #include "plane/flips.h"
+#include "plane/quality_floor.h"
 
 namespace anistar {
 
@@ -31,9 +32,16 @@ struct LengthCounts {
 LengthCounts control_lengths(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                              double shortest, double longest, int threads);
 
-/// Raises the worst cells: around every cell below `floor` swaps, moves, collapses and
-/// splits that raise the minimum quality, for a few rounds. @returns the number of
+struct RepairRule {
+  QualityFloor floor; ///< cells below it are repaired
+  /// Whether edges may become short, and may be split and collapsed whatever their
+  /// length: where unit edges make poor cells.
+  bool at_any_length = false;
+};
+
+/// Raises the worst cells: around every cell below the floor swaps, moves, collapses
+/// and splits that raise the minimum quality, for a few rounds. @returns the number of
 /// cells below it when the last round met them.
-std::size_t repair(Workspace &w, Monitor &monitor, double floor, int threads);
+std::size_t repair(Workspace &w, Monitor &monitor, const RepairRule &rule, int threads);
 
 } // namespace anistar

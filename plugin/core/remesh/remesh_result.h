@@ -18,6 +18,7 @@ template <std::size_t d> struct RemeshResult {
   std::vector<Facet<d>> facets; ///< in 3D boundary facets look outward
   std::vector<Index> facet_tags;
   Statistics statistics;
+  double kept_quality = 0; ///< what no cell should be below (see kept_quality.h)
   DistortionQuantiles distortion;
   bool was_checked = false;           ///< the certified fractions are known
   double simplex_ok = 0, star_ok = 0; ///< certified fractions

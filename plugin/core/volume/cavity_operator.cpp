@@ -69,7 +69,8 @@ bool CavityOperator::collect(std::span<const Index> cells,
   }
   outers_.clear();
   surface_.clear();
-  const double threshold = acceptance.threshold(old_minimum);
+  const double threshold =
+      acceptance.threshold(old_minimum, volume_.data->kept_quality);
   bool has_base = false;
   for (Index c : cells) {
     const bool is_walled = volume_.is_walled(c);

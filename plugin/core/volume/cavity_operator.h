@@ -33,9 +33,11 @@ struct Acceptance {
   /// stay need not be measured again.
   bool is_apex_in_place = false;
 
-  [[nodiscard]] double threshold(double old_minimum) const {
+  /// @param kept what nothing may take the worst cell below, nor further below
+  [[nodiscard]] double threshold(double old_minimum, double kept) const {
     const double least = std::min(floor, better_by(gain, old_minimum));
-    return share > 0 ? std::min(least, share * old_minimum) : least;
+    return std::max(share > 0 ? std::min(least, share * old_minimum) : least,
+                    std::min(kept, old_minimum));
   }
 };
 

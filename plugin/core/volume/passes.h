@@ -68,6 +68,8 @@ public:
   /// Makes a pass look at everything the next time.
   void look_everywhere(Pass pass) { last_[static_cast<std::size_t>(pass)] = 0; }
   [[nodiscard]] double longest_edge() const;
+  /// Of the cells, in the measure of the passes.
+  [[nodiscard]] double least_quality() const;
   [[nodiscard]] const VolumeCounts &counts() const { return counts_; }
   [[nodiscard]] bool is_full() const { return is_full_; }
   [[nodiscard]] bool is_stopped() const {

@@ -171,14 +171,16 @@ VolumeResult remesh_volume(const VolumeInput &input,
     watch.phase("background");
     const Background<3> background(input.surface.points, input.cells, metric,
                                    settings.threads);
-    Volume volume = make_volume(input, metric, background, geometry,
-                                timed(std::move(projection), monitor));
-    const Shaping shaping = shape_volume(volume, monitor, settings.hausdorff,
-                                         settings.seed, settings.threads, watch);
+    const SurfaceProjection project = timed(std::move(projection), monitor);
+    const Shaping shaping = shape_volume(
+        [&] { return make_volume(input, metric, background, geometry, project); },
+        monitor, settings.hausdorff, settings.seed, settings.threads, watch);
+    Volume &volume = *shaping.volume;
     watch.phase("agreement");
     agree(volume, monitor, settings, out);
     certify_stars(volume, monitor, settings, watch, out);
     watch.phase("report");
+    out.kept_quality = shaping.kept;
     take_mesh(volume, out);
     take_counts(shaping.counts, out);
     const bool is_over = shaping.is_full || out.vertices.size() > settings.max_vertices;

@@ -18,6 +18,14 @@ void VolumePasses::repair(double quality) {
   }
 }
 
+double VolumePasses::least_quality() const {
+  double least = 1;
+  for (std::size_t c = 0; c < volume_.mesh.cells.size(); ++c)
+    if (volume_.mesh.is_alive(static_cast<Index>(c)))
+      least = std::min(least, volume_.quality_of(static_cast<Index>(c)));
+  return least;
+}
+
 bool VolumePasses::repair_cell(Index c) {
   const Triangulation<3> &mesh = volume_.mesh;
   if (swap_cell(c))

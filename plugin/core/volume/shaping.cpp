@@ -1,5 +1,7 @@
 #include "volume/shaping.h"
 
+#include "remesh/kept_quality.h"
+
 namespace anistar {
 namespace {
 
@@ -29,6 +31,12 @@ constexpr int n_sweeps = 3;
 /// Where the metric is steep, all is polished, several times; else what is below this.
 constexpr int n_steep_polishes = 3;
 constexpr double polished_below = .5;
+
+/// Repairs of what is below the quality that is kept, at the end.
+constexpr int n_last_repairs = 2;
+/// It is kept when no cell is below this part of it: the passes compute in single
+/// precision.
+constexpr double kept_part = .999;
 
 /// Keeps a mesh sorted along its curve while vertices come and go: what is near in
 /// space must be near in memory, or most of the time goes into waiting for it.
@@ -109,7 +117,8 @@ void grow(Volume &volume, VolumePasses &passes, int threads) {
 }
 
 /// Phase 3: sweeps at the final size.
-void shape(VolumePasses &passes) {
+void shape(VolumePasses &passes, double kept) {
+  passes.repair(kept);
   for (int sweep = 0; sweep < n_sweeps && !passes.is_stopped(); ++sweep) {
     (void)passes.split({longest_edge, .15, .5});
     passes.swap(.7);
@@ -123,19 +132,52 @@ void shape(VolumePasses &passes) {
       (void)passes.split({longest_edge, .25, .5});
     passes.polish(is_steep ? 1 : polished_below);
   }
+  for (int k = 0; k < n_last_repairs && !passes.is_stopped(); ++k)
+    passes.repair(kept);
+}
+
+/// When a mesh begins to keep its least quality. Most get better cells if they may be
+/// poor for a while, as long as they grow; not where a surface curves within the
+/// thickness of the part that it bounds.
+enum class Keeping { at_final_size, always };
+
+/// The mesh after phases 2 and 3.
+Shaping attempt(Volume start, Keeping keeping, Monitor &monitor,
+                const HausdorffNumbers &hausdorff, std::uint64_t seed, int threads,
+                Stopwatch &watch) {
+  auto volume = std::make_unique<Volume>(std::move(start));
+  const double kept =
+      kept_quality<3>(volume->mesh.vertices, volume->mesh.cells, threads);
+  VolumePasses passes(*volume, monitor, hausdorff, seed, threads);
+  watch.phase("size");
+  volume->data->kept_quality = keeping == Keeping::always ? kept : 0;
+  grow(*volume, passes, threads);
+  watch.phase("shape");
+  volume->data->kept_quality = kept;
+  shape(passes, kept);
+  renumber(*volume, threads);
+  return {std::move(volume), passes.counts(), passes.is_full(), kept,
+          passes.least_quality()};
 }
 
 } // namespace
 
-Shaping shape_volume(Volume &volume, Monitor &monitor, const HausdorffNumbers &hausdorff,
-                     std::uint64_t seed, int threads, Stopwatch &watch) {
-  VolumePasses passes(volume, monitor, hausdorff, seed, threads);
+Shaping shape_volume(const std::function<Volume()> &start, Monitor &monitor,
+                     const HausdorffNumbers &hausdorff, std::uint64_t seed, int threads,
+                     Stopwatch &watch) {
+  const auto make = [&](Keeping keeping) {
+    return attempt(start(), keeping, monitor, hausdorff, seed, threads, watch);
+  };
+  const auto is_complete = [&](const Shaping &made) {
+    return !made.is_full && monitor.reason() == StopReason::finished;
+  };
+  Shaping first = make(Keeping::at_final_size);
+  if (first.least >= kept_part * first.kept || !is_complete(first))
+    return first;
   watch.phase("size");
-  grow(volume, passes, threads);
-  watch.phase("shape");
-  shape(passes);
-  renumber(volume, threads);
-  return {passes.counts(), passes.is_full()};
+  Shaping second = make(Keeping::always);
+  return is_complete(second) && second.least > first.least ? std::move(second)
+                                                           : std::move(first);
 }
 
 } // namespace anistar

@@ -4,16 +4,27 @@
 #include "base/stopwatch.h"
 #include "volume/passes.h"
 
+#include <functional>
+#include <memory>
+
 namespace anistar {
 
 struct Shaping {
+  std::unique_ptr<Volume> volume;
   VolumeCounts counts;
   bool is_full = false; ///< a split had to be left out for want of vertices
+  double kept = 0;      ///< what its quality should not be below (see kept_quality.h)
+  double least = 0;     ///< of its qualities, in the mean of the metrics
 };
 
 /// Splits and collapses until the edges have unit length, and improves the cells.
-[[nodiscard]] Shaping shape_volume(Volume &volume, Monitor &monitor,
-                                   const HausdorffNumbers &hausdorff, std::uint64_t seed,
-                                   int threads, Stopwatch &watch);
+///
+/// No step of phase 3 lowers the least quality below what is kept. Where that is not
+/// enough another mesh is made which keeps it all the time, and the better one is
+/// returned.
+/// @param start makes the mesh that it begins with
+[[nodiscard]] Shaping shape_volume(const std::function<Volume()> &start,
+                                   Monitor &monitor, const HausdorffNumbers &hausdorff,
+                                   std::uint64_t seed, int threads, Stopwatch &watch);
 
 } // namespace anistar

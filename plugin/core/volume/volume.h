@@ -27,6 +27,8 @@ struct VolumeState {
   /// When a cell, or a cell at a vertex, last changed, in passes.
   std::vector<std::uint32_t> cell_clock, vertex_clock;
   Slabs slabs;
+  /// No operation may take the worst cell below this, nor further below.
+  double kept_quality = 0;
   /// All cells at the vertices where bodies only touch: they are not joined by facets,
   /// so that a walk sees some of them alone.
   std::unordered_map<Index, std::vector<Index>> fans;
