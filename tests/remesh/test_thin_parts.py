@@ -95,7 +95,7 @@ def test_what_cannot_be_kept_is_named():
     # the curve through the corners of this polygon bends by more than the strip is thick
     x = np.linspace(0.0, 2.0, 81)
     low = np.stack([x, 0.2 * np.sin(2 * np.pi * x)], 1)
-    points = np.concatenate([low, low + [0.0, 0.002]])
+    points = np.concatenate([low, low + np.array([0.0, 0.002])])
     a, n = np.arange(80), 81
     cells = np.concatenate([np.stack([a, a + 1, a + n + 1], 1), np.stack([a, a + n + 1, a + n], 1)])
     mesh = Mesh(points=points, cells=cells)

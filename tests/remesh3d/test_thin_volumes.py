@@ -32,7 +32,7 @@ def bodies(n, thickness):
 
 
 DOMAINS = {
-    "plate": lambda: plate(6, 0.1),
+    "plate": lambda: plate(5, 0.1),
     "thin plate": lambda: plate(8, 0.01),
     "arch": lambda: arch(8, 0.1),
     "thin arch": lambda: arch(8, 0.02),
@@ -41,7 +41,7 @@ DOMAINS = {
 OPTIONS = RemeshOptions(agreement=False)
 
 
-@pytest.mark.parametrize("size", [0.5, 0.2, 0.1])
+@pytest.mark.parametrize("size", [0.5, 0.15])
 @pytest.mark.parametrize("domain", DOMAINS)
 def test_the_least_quality_is_kept(domain, size):
     mesh = DOMAINS[domain]()
@@ -56,7 +56,7 @@ def test_the_least_quality_is_kept(domain, size):
 def test_it_is_the_same_for_any_number_of_threads():
     mesh = arch(8, 0.02)
     first, second = (
-        remesh(mesh, uniform(mesh, 0.1), RemeshOptions(agreement=False, threads=n)).mesh
+        remesh(mesh, uniform(mesh, 0.3), RemeshOptions(agreement=False, threads=n)).mesh
         for n in (1, 3)
     )
     assert first.points.tobytes() == second.points.tobytes()

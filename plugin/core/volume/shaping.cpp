@@ -116,9 +116,14 @@ void grow(Volume &volume, VolumePasses &passes, int threads) {
   order.finish();
 }
 
+void mend(VolumePasses &passes, double kept) {
+  if (passes.least_quality() < kept)
+    passes.repair(kept);
+}
+
 /// Phase 3: sweeps at the final size.
 void shape(VolumePasses &passes, double kept) {
-  passes.repair(kept);
+  mend(passes, kept);
   for (int sweep = 0; sweep < n_sweeps && !passes.is_stopped(); ++sweep) {
     (void)passes.split({longest_edge, .15, .5});
     passes.swap(.7);
@@ -133,7 +138,7 @@ void shape(VolumePasses &passes, double kept) {
     passes.polish(is_steep ? 1 : polished_below);
   }
   for (int k = 0; k < n_last_repairs && !passes.is_stopped(); ++k)
-    passes.repair(kept);
+    mend(passes, kept);
 }
 
 /// When a mesh begins to keep its least quality. Most get better cells if they may be
