@@ -67,8 +67,10 @@ def test_what_is_read_as_smooth_grows_where_the_polyhedron_does_not():
 
 
 def test_coplanar_facets_are_one_face_that_is_coarsened():
-    done = remesh(l_body(), uniform(l_body(), 1.0), POLYHEDRON).mesh
-    assert done.n_points == 12  # the corners of the L
+    mesh = l_body()
+    done = remesh(mesh, uniform(mesh, 1.0), POLYHEDRON).mesh
+    # the twelve corners of the L, and a point or two that keep the least quality
+    assert done.n_points <= 14 < mesh.n_points
 
 
 def test_a_polygon_keeps_its_corners_and_loses_the_points_between():
