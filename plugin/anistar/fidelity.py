@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -137,8 +138,20 @@ def measures_of(mesh: Mesh) -> Measures:
     )
 
 
+# The passes of a loop have one geometry: its shape is found once.
+_known: WeakKeyDictionary[Mesh, dict[tuple[Any, ...], SmoothShape | None]] = WeakKeyDictionary()
+
+
 def smooth_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape | None:
     """Return the shape that a geometry is taken for, None where its facets are that."""
+    known = _known.setdefault(geometry, {})
+    asked = (*sorted(options.as_shape().items()), *options.frozen_tags)
+    if asked not in known:
+        known[asked] = _found_shape(geometry, options)
+    return known[asked]
+
+
+def _found_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape | None:
     frozen = np.array(options.frozen_tags, dtype=np.int32)
     facets = geometry.facets, geometry.facet_tags
     if geometry.dim == 2:
@@ -283,8 +296,8 @@ def _changed(it: TagMeasure) -> str:
     what = {1: "length", 2: "area", 3: "volume"}[it.dim]
     return (
         f"{what} of {_named(it.tag, it.name)}: {it.change:+.1%} against the given mesh, "
-        f"{it.change_from_smooth:+.1%} against the smooth shape through its points; "
-        'shape="polyhedron" keeps what is given'
+        f"{it.change_from_smooth:+.1%} against the smooth shape through its points; without "
+        'project, shape="polyhedron" keeps what is given'
     )
 
 

@@ -97,16 +97,9 @@ def remesh(
     """
     options = RemeshOptions() if options is None else options
     require(RemeshOptions, options=options)
-    if options.shape == "polyhedron" and project is not None:
-        raise ValueError(
-            'project moves points off the facets, which are the domain with shape="polyhedron": '
-            "leave one of the two out"
-        )
     geometry = mesh if geometry is None else geometry
+    _check_call(mesh, geometry, project, options)
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
-    if geometry.dim != mesh.dim:
-        raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh {mesh.dim}")
-    _check_frozen(options.frozen_tags, geometry)
     scale = _unit_scale(mesh.points)
     call = _call_core if mesh.dim == 2 else remesh_volume
     with np.errstate(over="ignore", under="ignore"):
@@ -115,23 +108,9 @@ def remesh(
     ramp = approached(mesh, metric, scale, options.max_refinement)
     check_demand(mesh, ramp.metric, scale, options)
     raw = noted(call(mesh, ramp.metric, geometry, project, options, scale), ramp)
-    points, metric = raw["points"], raw["metric"]
-    points /= scale
-    metric *= scale * scale
-    kept = geometry if mesh.dim == 2 else mesh
-    ridges = {name: raw[name] for name in ("edges", "edge_tags") if name in raw}
-    new = Mesh._trusted(
-        points=points,
-        cells=raw["cells"],
-        cell_tags=raw["cell_tags"],
-        facets=raw["facets"],
-        facet_tags=raw["facet_tags"],
-        corners=_same_points(kept.points[kept.corners], points),
-        names={**mesh.names, **geometry.names},
-        **ridges,
-    )
-    if ramp.is_limited.any():
-        metric = carried(mesh, check_metric(M), new)
+    raw["metric"] *= scale * scale
+    new = _new_mesh(raw, mesh, geometry, scale)
+    metric = carried(mesh, check_metric(M), new) if ramp.is_limited.any() else raw["metric"]
     is_curved = mesh.dim == 2 or raw["counts"]["curved"] > 0
     shape = smooth_shape(geometry, options) if is_curved else None
     report = report_of(
@@ -146,6 +125,37 @@ def remesh(
         check_surfaces(new, report)
     tell(report.warnings)
     return Remeshed(new, metric, report)
+
+
+def _check_call(
+    mesh: Mesh, geometry: Mesh, project: Project | None, options: RemeshOptions
+) -> None:
+    if options.shape == "polyhedron" and project is not None:
+        raise ValueError(
+            'project moves points off the facets, which are the domain with shape="polyhedron": '
+            "leave one of the two out"
+        )
+    if geometry.dim != mesh.dim:
+        raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh {mesh.dim}")
+    _check_frozen(options.frozen_tags, geometry)
+
+
+def _new_mesh(raw: dict[str, Any], mesh: Mesh, geometry: Mesh, scale: float) -> Mesh:
+    """Return what the core made of a mesh, in the coordinates of that mesh."""
+    points = raw["points"]
+    points /= scale
+    kept = geometry if mesh.dim == 2 else mesh
+    ridges = {name: raw[name] for name in ("edges", "edge_tags") if name in raw}
+    return Mesh._trusted(
+        points=points,
+        cells=raw["cells"],
+        cell_tags=raw["cell_tags"],
+        facets=raw["facets"],
+        facet_tags=raw["facet_tags"],
+        corners=_same_points(kept.points[kept.corners], points),
+        names={**mesh.names, **geometry.names},
+        **ridges,
+    )
 
 
 def _unit_scale(points: Float) -> float:

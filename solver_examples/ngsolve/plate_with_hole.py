@@ -109,8 +109,9 @@ def error(mesh):
 
 
 def uniform(mesh, h):
-    """Return a mesh with edges of the same length everywhere."""
-    return anistar.remesh(mesh, np.tile(np.eye(mesh.dim) / h**2, (mesh.n_points, 1, 1))).mesh
+    """Return a mesh with edges of the same length everywhere, the hole's too."""
+    M = np.tile(np.eye(mesh.dim) / h**2, (mesh.n_points, 1, 1))
+    return anistar.remesh(mesh, M, anistar.RemeshOptions(hausdorff_number=0.1)).mesh
 
 
 def main(dim=2, complexities=None, lengths=None, picture="plate.png"):

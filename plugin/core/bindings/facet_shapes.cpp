@@ -9,7 +9,12 @@
 namespace anistar::bindings {
 namespace {
 
-auto as_arrays(FacetShapes &&shapes) {
+template <class Input> auto shapes_of(const Input &input) {
+  FacetShapes shapes(0);
+  {
+    nb::gil_scoped_release release;
+    shapes = facet_shapes(input);
+  }
   const std::size_t n = shapes.sag.size(), n_edges = shapes.edge_length.size();
   return std::make_tuple(owned(std::move(shapes.measure), {n}),
                          owned(std::move(shapes.bulge), {n}),
@@ -25,7 +30,7 @@ auto shapes2(const Array2<double> &points, const Array2<Index> &cells,
                             indices_of(cell_tags),   facets_of<2>(facets),
                             indices_of(facet_tags),  indices_of(corners),
                             indices_of(frozen_tags), shape_of(shape)};
-  return as_arrays(facet_shapes(input));
+  return shapes_of(input);
 }
 
 auto shapes3(const Array2<double> &points, const Array2<Index> &facets,
@@ -36,7 +41,7 @@ auto shapes3(const Array2<double> &points, const Array2<Index> &facets,
                            indices_of(facet_tags),  pairs_of(edges),
                            indices_of(edge_tags),   indices_of(corners),
                            indices_of(frozen_tags), shape_of(shape)};
-  return as_arrays(facet_shapes(input));
+  return shapes_of(input);
 }
 
 } // namespace
