@@ -7,6 +7,8 @@ from remesh3d.test_curved import cylinder
 from surface.creased_shapes import TOP, block, crease
 
 from anistar import read, remesh, validate, write
+from anistar.formats import entity_borders
+from anistar.formats.entity_borders import LEAST_TURN, STANDING_OUT
 from anistar.mesh import Mesh
 
 
@@ -100,3 +102,30 @@ def test_in_2d_the_end_of_a_curve_is_a_corner_where_it_turns_more_than_beside(tm
     ]
     assert len(corners) == 4
     assert (abs(corners[:, 0]) < 1e-12).all()
+
+
+def test_each_border_is_judged_by_its_medians():
+    """Against one pair of entities at a time, where most borders are of a few edges."""
+    rng = np.random.default_rng(3)
+    x, y = (c.ravel() for c in np.meshgrid(np.arange(12.0), np.arange(12.0)))
+    points = np.column_stack([x, y, 0.3 * rng.random(len(x))])
+    corner = np.flatnonzero((x < 11) & (y < 11))[:, None]
+    facets = np.concatenate([corner + [0, 1, 13], corner + [0, 13, 12]])
+    entities = rng.integers(30, size=len(facets))
+    edges, pairs = entity_borders._folds(facets)
+    turn = entity_borders._half_tangents(points, facets, edges, pairs)
+    beside = np.zeros(len(points))
+    for pair, angle in zip(pairs, turn, strict=True):
+        if len(set(entities[pair])) == 1:
+            beside[facets[pair]] = np.maximum(beside[facets[pair]], angle)
+    level = beside[edges].max(axis=1)
+    between = {}
+    for row, pair in enumerate(pairs):
+        between.setdefault(tuple(sorted(entities[pair])), []).append(row)
+    expected = np.zeros(len(edges), dtype=bool)
+    for (first, second), rows in between.items():
+        least = max(LEAST_TURN, STANDING_OUT * np.median(level[rows]))
+        expected[rows] = first != second and np.median(turn[rows]) > least
+    found = entity_borders.border_ridges(points, facets, np.zeros(len(facets)), entities)
+    assert found.tolist() == edges[expected].tolist()
+    assert 20 < np.count_nonzero(expected) < len(edges) - 40

@@ -23,6 +23,15 @@ SU2 = "NDIME= 2\nNELEM= 1\n5 0 1 2 0\nNPOIN= 3\n0 0 0\n1 0 1\n0 1 2\n"
 ABAQUS = "*NODE\n1, 0, 0\n2, 1, 0\n3, 0, 1\n*ELEMENT, TYPE=CPS3, ELSET=s\n1, 1, 2, 3\n"
 VTK = "# vtk DataFile Version 4.2\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n"
 VTK_MESH = "POINTS 3 double\n0 0 0 1 0 0 0 1 0\nCELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n"
+STRIP = "".join(f"{i + 1} {i // 2} {i % 2} {(i // 2) % 2}\n" for i in range(N // 15))
+ENTITIES = "".join(
+    f"{i + 1} 2 2 1 {i + 1} {i + 1} {i + 2} {i + 3}\n{N + i} 1 2 1 {i + 1} {i + 1} {i + 3}\n"
+    for i in range(N // 15 - 2)
+)
+MANY_ENTITIES = (
+    f"$Nodes\n{N // 15}\n{STRIP}$EndNodes\n"
+    f"$Elements\n{2 * (N // 15 - 2) + 1}\n{3 * N} 4 2 1 1 1 2 3 4\n{ENTITIES}$EndElements\n"
+)
 XDMF = (
     '<Xdmf><Domain><Grid><Geometry GeometryType="XY"><DataItem Dimensions="3 2">0 0 1 0 0 1'
     '</DataItem></Geometry><Topology TopologyType="Mixed"><DataItem Dimensions="{}" '
@@ -54,6 +63,7 @@ def read(path, content):
         ("m.msh", GMSH + "$PhysicalNames\n1\n1 1 " + " " * 5 * N + "\n$EndPhysicalNames\n" + MESH),
         ("m.msh", GMSH + MESH + "".join(f"$A{i}\n$EndA{i}\n" for i in range(N // 3))),
         ("m.msh", "$MeshFormat\n" * N),
+        ("m.msh", GMSH + MANY_ENTITIES),
         ("m.su2", SU2 + "\n" * 10 * N + "NMARK= 0\n"),
         ("m.su2", SU2 + "A" * 5 * N + " " * 5 * N + "\nNMARK= 0\n"),
         ("m.su2", SU2 + f"NMARK= {N // 15}\n" + "".join(

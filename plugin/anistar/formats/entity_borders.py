@@ -53,9 +53,9 @@ def keep_borders(raw: RawMesh, entities: list[Array]) -> None:
 
 
 def _rows_not_in(edges: Array, others: Array) -> Array:
-    known = {tuple(row) for row in others.tolist()}
-    is_new = [tuple(row) not in known for row in edges.tolist()]
-    return np.asarray(edges[np.array(is_new, dtype=bool)])
+    _, row = np.unique(np.concatenate([others, edges]), axis=0, return_inverse=True)
+    known, asked = np.split(row.ravel(), [len(others)])
+    return np.asarray(edges[~np.isin(asked, known)])
 
 
 def border_corners(points: Float, facets: Array, tags: Array, entities: Array) -> Array:
@@ -114,12 +114,18 @@ def border_ridges(points: Float, facets: Array, tags: Array, entities: Array) ->
     level = beside[edges].max(axis=1, initial=0)
     edges, turn, level = edges[is_border], turn[is_border], level[is_border]
     met = np.sort(entities[pairs[is_border]], axis=1)
-    is_ridge = np.zeros(len(edges), dtype=bool)
-    for pair in np.unique(met, axis=0):
-        here = (met == pair).all(axis=1)
-        least = max(LEAST_TURN, STANDING_OUT * float(np.median(level[here])))
-        is_ridge[here] = np.median(turn[here]) > least
-    return np.asarray(edges[is_ridge])
+    _, border = np.unique(met, axis=0, return_inverse=True)
+    border = border.ravel()
+    least = np.maximum(LEAST_TURN, STANDING_OUT * _medians(level, border))
+    return np.asarray(edges[(_medians(turn, border) > least)[border]])
+
+
+def _medians(values: Float, group: Array) -> Float:
+    """Return the median of the values of each group; groups are numbered from 0."""
+    ordered = values[np.lexsort((values, group))]
+    count = np.bincount(group)
+    start = np.cumsum(count) - count
+    return np.asarray((ordered[start + (count - 1) // 2] + ordered[start + count // 2]) / 2)
 
 
 def _folds(facets: Array) -> tuple[Array, Array]:
