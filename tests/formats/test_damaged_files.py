@@ -253,6 +253,7 @@ def _bomb(n_bytes):
     )
 
 
+ENTITY = '<!DOCTYPE l [<!ENTITY a "x">]><VTKFile>&a;</VTKFile>'
 POINTS_41 = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 99999999999 1 9\n2 1 0 99999999999\n"
 
 
@@ -289,8 +290,11 @@ POINTS_41 = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 99999999999 1 9\n2 
         ),
         ("m.vtu", _bomb(200 * 2**20), "its arrays take more than 100 times its length"),
         ("m.vtu", _vtu(base64.b64encode(struct.pack("<Q", 2**60)).decode()), "it is truncated"),
-        ("m.vtu", '<!DOCTYPE l [<!ENTITY a "x">]><VTKFile>&a;</VTKFile>', "it defines entities"),
-        ("m.xdmf", '<!DOCTYPE l [<!ENTITY a SYSTEM "/etc/passwd">]><Xdmf>&a;</Xdmf>', "entities"),
+        ("m.vtu", ENTITY, "it defines the entity 'a'"),
+        ("m.vtu", ENTITY.encode("utf-16"), "it defines the entity 'a'"),
+        ("m.vtu", ENTITY.replace("a ", "% a ", 1), "it defines the entity 'a'"),
+        ("m.xdmf", ENTITY.replace('"x"', 'SYSTEM "/etc/passwd"'), "it defines the entity 'a'"),
+        ("m.xdmf", '<!DOCTYPE l SYSTEM "l.dtd"><Xdmf>&a;</Xdmf>', "undefined entity &a;"),
         ("m.xdmf", "<Xdmf>" + "<Domain>" * 50_000 + "</Domain>" * 50_000 + "</Xdmf>", "0 grids"),
     ],
     ids=lambda value: value if isinstance(value, str) and len(value) < 60 else "",

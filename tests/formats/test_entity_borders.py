@@ -109,8 +109,8 @@ def test_each_border_is_judged_by_its_medians():
     rng = np.random.default_rng(3)
     x, y = (c.ravel() for c in np.meshgrid(np.arange(12.0), np.arange(12.0)))
     points = np.column_stack([x, y, 0.3 * rng.random(len(x))])
-    corner = np.flatnonzero((x < 11) & (y < 11))[:, None]
-    facets = np.concatenate([corner + [0, 1, 13], corner + [0, 13, 12]])
+    corner = np.flatnonzero((x < 11) & (y < 11))
+    facets = np.add.outer(corner, [[0, 1, 13], [0, 13, 12]]).reshape(-1, 3)
     entities = rng.integers(30, size=len(facets))
     edges, pairs = entity_borders._folds(facets)
     turn = entity_borders._half_tangents(points, facets, edges, pairs)

@@ -137,6 +137,16 @@ def test_su2_keeps_what_it_can_hold(tmp_path, make):
     assert validate(got) == []
 
 
+def test_xdmf_may_name_its_dtd(tmp_path):
+    mesh = two_regions()
+    path = tmp_path / "m.xdmf"
+    formats.write(path, mesh)
+    text = path.read_text()
+    head = '<?xml version="1.0" ?>\n<!DOCTYPE Xdmf SYSTEM "Xdmf.dtd" []>\n'
+    path.write_text(head + text[text.index("<Xdmf") :])
+    assert np.array_equal(formats.read(path)[0].cells, mesh.cells)
+
+
 ABAQUS = """*HEADING
 ** a comment
 *NODE
