@@ -43,6 +43,47 @@ def test_gmsh_4_in_text_and_binary(tmp_path, make, kind):
     assert formats.read(path)[0].names == mesh.names
 
 
+GMSH_REVERSED = """$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+1 3 "bottom"
+2 2 "plate"
+$EndPhysicalNames
+$Entities
+0 1 1 0
+1 0 0 0 1 0 0 1 -3 0
+1 0 0 0 1 1 0 1 -2 1 1
+$EndEntities
+$Nodes
+1 3 1 3
+2 1 0 3
+1
+2
+3
+0 0 0
+1 0 0
+1 1 0
+$EndNodes
+$Elements
+2 2 1 2
+1 1 1 1
+1 1 2
+2 1 2 1
+2 1 2 3
+$EndElements
+"""
+
+
+def test_groups_of_gmsh_may_have_their_entities_the_other_way_round(tmp_path):
+    (tmp_path / "m.msh").write_text(GMSH_REVERSED)
+    mesh = formats.read(tmp_path / "m.msh")[0]
+    assert mesh.cell_tags.tolist() == [2]
+    assert np.count_nonzero(mesh.facet_tags == 3) == 1
+    assert mesh.names == {(1, 3): "bottom", (2, 2): "plate"}
+
+
 @pytest.mark.parametrize("make", MAKERS)
 @pytest.mark.parametrize("kind", MESHIO)
 def test_what_meshio_writes(tmp_path, make, kind):

@@ -40,7 +40,8 @@ def read_entities(stream: Stream, version: str) -> Groups:
             if (dim, tag) in groups:
                 raise ValueError(f"the entity {tag} of dimension {dim} is given twice")
             stream.reals(_BOX if dim else _BOX_OF_POINT[version])
-            groups[dim, tag] = stream.ints(int(stream.sizes(1)[0])).tolist()
+            # the sign says that the group has the entity the other way round
+            groups[dim, tag] = np.abs(stream.ints(int(stream.sizes(1)[0]))).tolist()
             if dim:
                 stream.ints(int(stream.sizes(1)[0]))
     stream.finish()
