@@ -303,6 +303,16 @@ def test_sizes_are_checked_against_the_length_of_the_file(tmp_path, name, conten
     refused(tmp_path / name, content, message)
 
 
+def test_points_of_xdmf_cells_in_another_order_are_refused(tmp_path):
+    path = tmp_path / "m.xdmf"
+    formats.write(path, square(1))
+    text = path.read_text()
+    for told, message in (("BaseOffset", "1"), ("Order", "0 2 1"), ("Order", "1 2 3")):
+        refused(path, text.replace("<Topology", f'<Topology {told}="{message}"'), f"has {told} '")
+    path.write_text(text.replace("<Topology", '<Topology BaseOffset="0" Order="0 1 2"'))
+    assert formats.read(path)[0].n_cells == 2
+
+
 def test_numbers_outside_of_an_xdmf_file_are_not_followed(tmp_path):
     path = tmp_path / "m.xdmf"
     formats.write(path, square(1))

@@ -114,6 +114,7 @@ def _points(geometry: Element) -> Array:
 
 def _cells(topology: Element) -> tuple[list[str], list[Array]]:
     """Return runs of cells of one kind, and their points."""
+    _check_topology(topology)
     kind = topology.get("TopologyType", topology.get("Type", "")).lower()
     values = _numbers(_only(topology, "DataItem"))
     if values.dtype.kind not in "iu":
@@ -126,6 +127,17 @@ def _cells(topology: Element) -> tuple[list[str], list[Array]]:
     if values.ndim != 2 or values.shape[1] != width:
         raise ValueError(f"its cells have the shape {values.shape}, {kind} has {width} points")
     return [name], [values]
+
+
+def _check_topology(topology: Element) -> None:
+    """Raise if the points of cells are counted or ordered in another way than usual."""
+    if (base := topology.get("BaseOffset", "0").strip()) != "0":
+        raise ValueError(f"its topology has BaseOffset {base[:20]!r}: count its points from 0")
+    order = topology.get("Order", "").split()
+    if order != [str(place) for place in range(len(order))]:
+        raise ValueError(
+            f"its topology has Order {' '.join(order)[:40]!r}: write the points of cells in order"
+        )
 
 
 def _mixed(values: Array) -> tuple[list[str], list[Array]]:
