@@ -178,6 +178,19 @@ def test_su2_keeps_what_it_can_hold(tmp_path, make):
     assert validate(got) == []
 
 
+@pytest.mark.parametrize("precision", ["", 'Precision="4"', 'Precision="8"'])
+def test_all_digits_of_xdmf_are_read(tmp_path, precision):
+    path = tmp_path / "m.xdmf"
+    path.write_text(
+        f"""<Xdmf><Domain><Grid>
+        <Geometry GeometryType="XY"><DataItem Dimensions="3 2" {precision}>
+        0 0 1.123456789012 0 0 1</DataItem></Geometry>
+        <Topology TopologyType="Triangle"><DataItem Dimensions="1 3" NumberType="Int">
+        0 1 2</DataItem></Topology></Grid></Domain></Xdmf>"""
+    )
+    assert formats.read(path)[0].points[1, 0] == 1.123456789012
+
+
 def test_xdmf_may_name_its_dtd(tmp_path):
     mesh = two_regions()
     path = tmp_path / "m.xdmf"

@@ -184,9 +184,8 @@ def _numbers(item: Element) -> Array:
     kind = item.get("NumberType", item.get("DataType", "Float"))
     if kind not in ("Float", "Int", "UInt", "Char", "UChar"):
         raise ValueError(f"numbers of type {kind!r} are not known")
-    is_single = item.get("Precision", "4") == "4"
-    dtype = np.float32 if is_single else np.float64
-    values = parsed(item.text or "", dtype if kind == "Float" else np.int64)
+    # all digits count: without a precision, which means four bytes, programs write them too
+    values = parsed(item.text or "", np.float64 if kind == "Float" else np.int64)
     if math.prod(shape) != len(values):
         raise ValueError(f"an item announces {shape} numbers, {len(values)} follow")
     return values.reshape(shape)
