@@ -20,11 +20,11 @@ from .cursor import Cursor
 from .raw import Array, RawMesh
 from .reading import reading
 from .tag_arrays import TAGS, take_tags
+from .vtk_arrays import count_in, read_arrays, word_in
 from .vtk_cells import blocks_of, ends_of_rows
 from .vtk_numbers import LegacyNumbers
 
 OWN_TITLE = f"written by anistar through meshio, {TAGS} comes last"
-_FIXED_WIDTHS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TENSORS6": 6}
 _LARGEST_VERSION = 5
 
 
@@ -74,7 +74,7 @@ def _mesh(data: bytes) -> RawMesh:
         else:
             if not current and grid.points is not None and section != "METADATA":
                 raise ValueError(f"{section[:40]} comes before POINT_DATA or CELL_DATA")
-            _read_arrays(grid.data.get(current), grid.length(current), words, numbers)
+            read_arrays(grid.data.get(current), grid.length(current), words, numbers)
     return _raw(grid, title)
 
 
@@ -93,7 +93,7 @@ def _check_head(version: str, encoding: str, dataset: str) -> None:
 def _open(grid: _Grid, section: str, words: list[str]) -> None:
     if section in grid.data:
         raise ValueError(f"it has two sections {section}: only one can be meant")
-    n = _count(words, 1)
+    n = count_in(words, 1)
     if n != grid.length(section):
         raise ValueError(f"{section} is for {n} values, there are {grid.length(section)}")
     grid.data[section] = {}
@@ -103,9 +103,9 @@ def _read_geometry(grid: _Grid, section: str, words: list[str], numbers: LegacyN
     name = {"POINTS": "points", "CELLS": "rows", "CELL_TYPES": "types"}[section]
     if getattr(grid, name) is not None:
         raise ValueError(f"it has two sections {section}: only one can be meant")
-    n = _count(words, 1)
+    n = count_in(words, 1)
     if section == "POINTS":
-        grid.points = numbers.read(_word(words, 2), 3 * n).reshape(n, 3)
+        grid.points = numbers.read(word_in(words, 2), 3 * n).reshape(n, 3)
     elif section == "CELL_TYPES":
         grid.types = numbers.read("int", n)
     elif numbers.peek().upper().startswith("OFFSETS"):
@@ -113,88 +113,15 @@ def _read_geometry(grid: _Grid, section: str, words: list[str], numbers: LegacyN
         if n == 0 or ends[0] != 0:
             raise ValueError("the offsets of its cells do not begin with 0")
         kind = _type_in(numbers.next_words(), "CONNECTIVITY")
-        grid.ends, grid.rows = ends[1:], numbers.read(kind, _count(words, 2))
+        grid.ends, grid.rows = ends[1:], numbers.read(kind, count_in(words, 2))
     else:
-        grid.rows = numbers.read("int", _count(words, 2))
-
-
-def _read_arrays(
-    data: dict[str, Array] | None, n_rows: int, words: list[str], numbers: LegacyNumbers
-) -> None:
-    """Read what begins with `words`: one array, or a field of several.
-
-    A field before the data of points and cells is about the whole file, and not kept.
-    """
-    section = words[0].upper()
-    if section == "METADATA":
-        numbers.skip_metadata()
-    elif section == "FIELD":
-        for _ in range(_count(words, 2)):
-            name, width, n, kind = _head_in_field(numbers)
-            values = numbers.read(kind, width * n)
-            if data is not None:
-                if n != n_rows:
-                    raise ValueError(f"field {name!r} has {n} values, not {n_rows}")
-                _keep(data, name, values.reshape(n, width))
-    elif data is None:
-        raise ValueError(f"the section {section[:40]!r} is not known")
-    elif section == "SCALARS":
-        width = _count(words, 3) if len(words) > 3 else 1
-        if numbers.peek().upper().startswith("LOOKUP_TABLE"):
-            numbers.next_words()
-        _keep(
-            data,
-            _word(words, 1),
-            numbers.read(_word(words, 2), width * n_rows).reshape(n_rows, width),
-        )
-    elif section == "LOOKUP_TABLE":
-        numbers.read("float" if numbers.is_text else "unsigned_char", 4 * _count(words, 2))
-    elif section in _FIXED_WIDTHS:
-        width = _FIXED_WIDTHS[section]
-        _keep(
-            data,
-            _word(words, 1),
-            numbers.read(_word(words, 2), width * n_rows).reshape(n_rows, width),
-        )
-    else:
-        raise ValueError(f"the section {section[:40]!r} is not known")
-
-
-def _head_in_field(numbers: LegacyNumbers) -> tuple[str, int, int, str]:
-    words = numbers.next_words()
-    while words[:1] == ["METADATA"]:
-        numbers.skip_metadata()
-        words = numbers.next_words()
-    if len(words) != 4:
-        raise ValueError("it is truncated: a field has fewer arrays than announced")
-    return words[0], _count(words, 1), _count(words, 2), words[3]
-
-
-def _keep(data: dict[str, Array], name: str, values: Array) -> None:
-    if name in data:
-        raise ValueError(f"it has two arrays {name!r}: only one can be meant")
-    if values.shape[1] == 0:
-        raise ValueError(f"the array {name!r} has no components")
-    data[name] = values[:, 0] if values.shape[1] == 1 else values
+        grid.rows = numbers.read("int", count_in(words, 2))
 
 
 def _type_in(words: list[str], section: str) -> str:
     if len(words) != 2 or words[0].upper() != section:
         raise ValueError(f"{section} with a type is missing behind CELLS")
     return words[1]
-
-
-def _word(words: list[str], at: int) -> str:
-    if at >= len(words):
-        raise ValueError(f"{' '.join(words)[:60]!r} has no name or type")
-    return words[at]
-
-
-def _count(words: list[str], at: int) -> int:
-    longest = len(str(2**63))
-    if at >= len(words) or not words[at].isdecimal() or len(words[at]) > longest:
-        raise ValueError(f"{' '.join(words)[:60]!r} has no count")
-    return int(words[at])
 
 
 def _raw(grid: _Grid, title: str) -> RawMesh:
