@@ -6,6 +6,7 @@ from foreign_files import GMSH, MESHIO, gmsh_4, sample, write_with_meshio
 from meshes import square, two_region_cube, two_regions
 
 from anistar import Field, Mesh, formats
+from anistar.errors import FormatError
 from anistar.validation import validate
 
 MAKERS = [two_regions, two_region_cube]
@@ -140,6 +141,39 @@ def test_what_vtk_writes_in_its_legacy_format(tmp_path, version, is_text):
     assert {violation.kind for violation in validate(got, mesh)} <= {"names"}
     assert np.allclose(got.points, mesh.points)
     assert np.allclose(back["v"].values, on_points["v"])
+
+
+def grid(mesh):
+    """What VTK's legacy writer takes, and the function that has it write a file."""
+    io = pytest.importorskip("vtkmodules.vtkIOLegacy")
+    from anistar.adapters.vtk import to_vtk
+
+    content = to_vtk(mesh, {"v": Field(mesh.points + 1), "u": Field(mesh.points[:, 0])})
+
+    def write(path, *, is_text):
+        writer = io.vtkUnstructuredGridWriter()
+        writer.SetInputData(content)
+        writer.SetFileName(str(path))
+        writer.SetFileTypeToASCII() if is_text else writer.SetFileTypeToBinary()
+        assert writer.Write() == 1
+
+    return content, write
+
+
+@pytest.mark.parametrize("is_text", [True, False])
+def test_an_array_may_come_twice_in_legacy_vtk_if_it_is_the_same(tmp_path, is_text):
+    mesh = two_region_cube()
+    content, write = grid(mesh)
+    content.GetPointData().SetActiveVectors("v")
+    content.GetPointData().SetActiveScalars("v")
+    path = tmp_path / "m.vtk"
+    write(path, is_text=is_text)
+    assert path.read_bytes().count(b" v double") == 2
+    assert np.allclose(formats.read(path)[1]["v"].values, mesh.points + 1)
+    data = path.read_bytes()
+    path.write_bytes(data.replace(b"SCALARS u", b"SCALARS v").replace(b"\nu 1 ", b"\nv 1 "))
+    with pytest.raises(FormatError, match="two different arrays 'v'"):
+        formats.read(path)
 
 
 def test_pieces_are_put_together(tmp_path):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .raw import Array
 from .vtk_numbers import LegacyNumbers
 
@@ -61,11 +63,16 @@ def _head_in_field(numbers: LegacyNumbers) -> tuple[str, int, int, str]:
 
 
 def _keep(data: dict[str, Array], name: str, values: Array) -> None:
-    if name in data:
-        raise ValueError(f"it has two arrays {name!r}: only one can be meant")
     if values.shape[1] == 0:
         raise ValueError(f"the array {name!r} has no components")
-    data[name] = values[:, 0] if values.shape[1] == 1 else values
+    values = values[:, 0] if values.shape[1] == 1 else values
+    # VTK writes what are its scalars and its vectors at once as both
+    is_same = name in data and np.array_equal(
+        data[name], values, equal_nan=values.dtype.kind == "f"
+    )
+    if name in data and not is_same:
+        raise ValueError(f"it has two different arrays {name!r}: only one can be meant")
+    data[name] = values
 
 
 def word_in(words: list[str], at: int) -> str:
