@@ -176,6 +176,51 @@ def test_an_array_may_come_twice_in_legacy_vtk_if_it_is_the_same(tmp_path, is_te
         formats.read(path)
 
 
+@pytest.mark.parametrize("is_text", [True, False])
+def test_what_is_no_field_in_legacy_vtk_is_told(tmp_path, is_text):
+    mesh = two_region_cube()
+    content, write = grid(mesh)
+    core = pytest.importorskip("vtkmodules.vtkCommonCore")
+    on_points, on_cells = content.GetPointData(), content.GetCellData()
+
+    def add(kind, name, n, to, *, width=1, value=1):
+        array = kind()
+        array.SetName(name)
+        array.SetNumberOfComponents(width)
+        for i in range(n * width):
+            array.InsertNextValue(value(i) if callable(value) else value)
+        to(array)
+
+    n, m = mesh.n_points, content.GetNumberOfCells()
+    strings = ["", "a b", 70 * "c", 20_000 * "d"]
+    add(
+        core.vtkStringArray,
+        "of the file",
+        4,
+        content.GetFieldData().AddArray,
+        value=lambda i: strings[i],
+    )
+    add(core.vtkIdTypeArray, "ids", n, on_points.SetGlobalIds)
+    add(core.vtkUnsignedCharArray, "rgb", n, on_points.SetScalars, width=3, value=9)
+    add(core.vtkDoubleArray, "my places", n, on_points.SetTCoords, width=2)
+    add(core.vtkStringArray, "words", m, on_cells.AddArray, value=lambda i: strings[i % 4])
+    add(core.vtkBitArray, "bits", m, on_cells.AddArray, value=lambda i: int(i % 3 == 0))
+    add(core.vtkDoubleArray, "50% of it", m, on_cells.AddArray, value=float)
+    path = tmp_path / "m.vtk"
+    write(path, is_text=is_text)
+    for old, new in ((b"x", b"x"), (b"\nDATASET", b"\n\nDATASET")):
+        path.write_bytes(path.read_bytes().replace(old, new, 1))
+        got, fields, report = formats.read_with_report(path)
+        assert got.n_cells == mesh.n_cells
+        assert fields.keys() == {"u", "v", "bits", "50% of it"}
+        places = fields["50% of it"].values
+        assert np.array_equal(places, places[0] + np.arange(mesh.n_cells))
+        assert np.array_equal(fields["bits"].values, places % 3 == 0)
+        assert np.allclose(fields["v"].values, mesh.points + 1)
+        told = "CELL_DATA words, POINT_DATA rgb, POINT_DATA my places, POINT_DATA ids"
+        assert f"no field and not read: the array {told}" in report.warnings
+
+
 def test_pieces_are_put_together(tmp_path):
     mesh = square(2)
     path = tmp_path / "m.vtu"

@@ -45,7 +45,7 @@ class Cursor:
         self.at = end
         return array
 
-    def integer(self, kind: str) -> int:
+    def integer(self, kind: str | np.dtype[Any]) -> int:
         """Return the next number."""
         return int(self.take(kind, 1)[0])
 

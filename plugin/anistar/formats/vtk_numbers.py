@@ -24,6 +24,9 @@ _TYPES = {
     "vtktypeint64": "i8",
     "vtktypeuint8": "u1",
 }
+_LENGTHS = ("u8", "u4", "u2", "u1")
+"""Of strings, by the first two bits, which are no part of the length."""
+_BITS = 8
 _BYTES_PER_NUMBER = 32
 
 
@@ -41,8 +44,8 @@ class LegacyNumbers:
 
     def peek(self) -> str:
         """Return the next line that has words without going on."""
-        self._cursor.skip_blanks()
         at = self._cursor.at
+        self._cursor.skip_blanks()
         line = self._cursor.line()
         self._cursor.at = at
         return line
@@ -54,6 +57,8 @@ class LegacyNumbers:
 
     def read(self, kind: str, count: int) -> Array:
         """Return the next numbers of a type that is called as in the file."""
+        if kind.lower() == "bit":
+            return self._read_bits(count)
         dtype = _TYPES.get(kind.lower())
         if dtype is None:
             raise ValueError(f"the type {kind[:40]!r} is not known")
@@ -62,6 +67,27 @@ class LegacyNumbers:
         start, self._cursor.at = self._cursor.at, self._end_of_words(count)
         text = self._cursor.data[start : self._cursor.at].decode("ascii", errors="replace")
         return parsed(text, np.int64 if dtype[0] in "iu" else dtype).astype(dtype)
+
+    def _read_bits(self, count: int) -> Array:
+        if self.is_text:
+            return self.read("unsigned_char", count)
+        n_bytes = -(-count // _BITS)
+        return np.unpackbits(self._cursor.take("u1", n_bytes), count=count)
+
+    def skip_strings(self, count: int) -> None:
+        """Go behind some strings: a line each, or a length in front of each one.
+
+        The first two bits of a length say in how many bytes it is written.
+        """
+        for _ in range(count):
+            if self._cursor.is_at_end:
+                raise ValueError(f"it is truncated: {count} strings are announced")
+            if self.is_text:
+                self._cursor.line()
+                continue
+            kind = np.dtype(_LENGTHS[self._cursor.data[self._cursor.at] >> (_BITS - 2)])
+            length = self._cursor.integer(kind) % (1 << (_BITS * kind.itemsize - 2))
+            self._cursor.take("u1", length)
 
     def _end_of_words(self, count: int) -> int:
         """Return where the next words end; no more is looked at than a few times their length."""

@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 
 from .cursor import Cursor
-from .raw import Array, RawMesh
+from .raw import Array, RawMesh, not_read
 from .reading import reading
 from .tag_arrays import TAGS, take_tags
-from .vtk_arrays import count_in, read_arrays, word_in
+from .vtk_arrays import Arrays, count_in, word_in
 from .vtk_cells import blocks_of, ends_of_rows
 from .vtk_numbers import LegacyNumbers
 
@@ -50,7 +50,7 @@ class _Grid:
     rows: Array | None = None
     ends: Array | None = None
     types: Array | None = None
-    data: dict[str, dict[str, Array]] = field(default_factory=dict)
+    data: dict[str, Arrays] = field(default_factory=dict)
 
     def length(self, section: str) -> int:
         """Return how many rows the arrays of a section have."""
@@ -60,21 +60,22 @@ class _Grid:
 
 def _mesh(data: bytes) -> RawMesh:
     cursor = Cursor(data, ">")
-    version, title, encoding, dataset = (cursor.line() for _ in range(4))
-    _check_head(version, encoding, dataset)
+    version, title, encoding = (cursor.line() for _ in range(3))
     numbers = LegacyNumbers(cursor, is_text=encoding.upper() == "ASCII")
-    grid, current = _Grid(), ""
+    _check_head(version, encoding, dataset=" ".join(numbers.next_words()))
+    grid, current = _Grid(), Arrays()
     while words := numbers.next_words():
         section = words[0].upper()
         if section in ("POINT_DATA", "CELL_DATA"):
-            current = section
-            _open(grid, section, words)
+            current = _opened(grid, section, words)
+            # VTK writes names with codes, we do not
+            current.has_codes = title != OWN_TITLE
         elif section in ("POINTS", "CELLS", "CELL_TYPES"):
             _read_geometry(grid, section, words, numbers)
         else:
-            if not current and grid.points is not None and section != "METADATA":
+            if not current.section and grid.points is not None and section != "METADATA":
                 raise ValueError(f"{section[:40]} comes before POINT_DATA or CELL_DATA")
-            read_arrays(grid.data.get(current), grid.length(current), words, numbers)
+            current.read(words, numbers)
     return _raw(grid, title)
 
 
@@ -90,13 +91,14 @@ def _check_head(version: str, encoding: str, dataset: str) -> None:
         raise ValueError(f"it holds {dataset[:40]!r}: save it as an unstructured grid")
 
 
-def _open(grid: _Grid, section: str, words: list[str]) -> None:
+def _opened(grid: _Grid, section: str, words: list[str]) -> Arrays:
     if section in grid.data:
         raise ValueError(f"it has two sections {section}: only one can be meant")
     n = count_in(words, 1)
     if n != grid.length(section):
         raise ValueError(f"{section} is for {n} values, there are {grid.length(section)}")
-    grid.data[section] = {}
+    grid.data[section] = Arrays(section, n)
+    return grid.data[section]
 
 
 def _read_geometry(grid: _Grid, section: str, words: list[str], numbers: LegacyNumbers) -> None:
@@ -128,13 +130,17 @@ def _raw(grid: _Grid, title: str) -> RawMesh:
     for name in ("points", "rows", "types"):
         if getattr(grid, name) is None:
             raise ValueError(f"it is truncated: its {name} are missing")
-    on_cells = grid.data.get("CELL_DATA", {})
+    on_points, on_cells = (
+        grid.data.get(section, Arrays()).kept for section in ("POINT_DATA", "CELL_DATA")
+    )
     rows, ends = np.asarray(grid.rows), grid.ends
     if ends is None:
         rows, ends = ends_of_rows(np.asarray(grid.types), rows)
     blocks = blocks_of(np.asarray(grid.types), ends, rows, on_cells)
     raw = RawMesh(np.asarray(grid.points, np.float64), blocks)
-    raw.point_data = grid.data.get("POINT_DATA", {})
+    raw.point_data = on_points
+    skipped = [name for arrays in grid.data.values() for name in arrays.skipped]
+    raw.warnings += not_read(skipped, what="array", why="no field")
     raw.six = "vtk"
     if title == OWN_TITLE:
         if TAGS not in on_cells:
