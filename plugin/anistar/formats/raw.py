@@ -36,7 +36,7 @@ def not_read(names: list[str], *, what: str = "section", why: str = "not known")
     if not names:
         return []
     more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
-    named = ", ".join(name[:_LONGEST_NAME] for name in names[:_MOST_NAMED])
+    named = ", ".join(" ".join(name[:_LONGEST_NAME].split()) for name in names[:_MOST_NAMED])
     return [f"{why} and not read: the {what} {named}{more}"]
 
 
