@@ -37,7 +37,9 @@ def read(path: Path) -> RawMesh:
 
 def _mesh(text: str) -> RawMesh:
     if not text[-1:].isspace():
-        raise ValueError("it is truncated: its last line does not end")
+        raise ValueError(
+            "it is truncated: its last line does not end. If it is whole, end it with a line break"
+        )
     entries = _entries(text)
     single = _single(entries)
     dim = _count(single["NDIME"])
@@ -84,6 +86,8 @@ def _single(entries: list[Entry]) -> dict[str, Entry]:
         if entry[0] in _NEEDED:
             single[entry[0]] = entry
     for key in _NEEDED:
+        if key not in single and key == "NMARK":
+            raise ValueError("NMARK= is missing: it is truncated, or needs NMARK= 0 at its end")
         if key not in single:
             raise ValueError(f"it is truncated: {key}= is missing")
     return single
