@@ -131,6 +131,12 @@ def test_our_own_files_miss_what_is_cut_off_behind_a_section(tmp_path, suffix):
         ),
         ("m.inp", "*NODE\n1, 0, 0\n*INCLUDE, INPUT=/etc/passwd\n", "file, which is not opened"),
         ("m.inp", "*NODE, INPUT=/etc/passwd\n", "file, which is not opened"),
+        ("m.inp", "*NODE, SYSTEM=C\n1, 0, 0\n", "*NODE has SYSTEM=C: give the nodes in Cartesian"),
+        (
+            "m.inp",
+            "*NODE\n1, 0, 0\n*ELEMENT, TYPE=CPS3\n1, x\n",
+            "m.inp: *ELEMENT holds something that is not a number",
+        ),
         ("m.inp", "*NODE\n1, 0, 0\n*ELEMENT, TYPE=C3D8\n1, 1\n", "no rows of 9"),
         (
             "m.inp",

@@ -300,6 +300,21 @@ ABAQUS = """*HEADING
 """
 
 
+def test_capitals_do_not_count_in_sets_of_abaqus(tmp_path):
+    text = ABAQUS.replace("*ELSET, ELSET=wall", "*ELSET, ELSET=half\nUpper\n*ELSET, ELSET=wall")
+    more = "*ELSET, ELSET=Wall\n1\n"
+    (tmp_path / "m.inp").write_text(text.replace("*NODE", "*NODE, SYSTEM=r") + more)
+    mesh, _, report = formats.read_with_report(tmp_path / "m.inp")
+    assert mesh.cell_tags.tolist() == [4, 3]
+    assert mesh.names[2, 3] == "half"
+    assert mesh.names[1, 4] == mesh.names[2, 4] == "wall"
+    assert "Wall" not in mesh.names.values()
+    assert (
+        "capitals do not count in names of sets, the first spelling is kept: 'wall' of 'Wall'"
+        in report.warnings
+    )
+
+
 def test_sets_of_abaqus_are_tags_and_the_last_one_counts(tmp_path):
     (tmp_path / "m.inp").write_text(ABAQUS)
     mesh, _, report = formats.read_with_report(tmp_path / "m.inp")

@@ -37,10 +37,11 @@ _KINDS = {
 _KIND_OF = {name: kind for kind, names in _KINDS.items() for name in names}
 _NODES_OF_REFUSED = {"quad": 4, "triangle6": 6, "hexahedron": 8, "tetra10": 10, "wedge": 6}
 _PARAMETERS = {
-    "NODE": ("NSET",),
+    "NODE": ("NSET", "SYSTEM"),
     "ELEMENT": ("TYPE", "ELSET"),
     "ELSET": ("ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"),
 }
+_MOST_NAMED, _LONGEST_NAME = 5, 60
 _GENERATED = 3
 """First, last and step of a set that is generated."""
 
@@ -56,6 +57,20 @@ class _Content:
     of_elements: dict[str, list[Array]] = field(default_factory=dict)
     sets: dict[str, list[Array]] = field(default_factory=dict)
     n_elements: int = 0
+    spelled: dict[str, str] = field(default_factory=dict)
+    respelled: list[str] = field(default_factory=list)
+
+    def defined(self, name: str) -> str:
+        """Return the name of a set as it was spelled first: capitals do not count in Abaqus."""
+        first = self.spelled.setdefault(name.upper(), name)
+        if first != name:
+            self.respelled.append(f"{first!r} of {name[:_LONGEST_NAME]!r}")
+        return first
+
+    def members(self, name: str) -> list[Array] | None:
+        """Return the elements in a set, None if there is none of this name."""
+        first = self.spelled.get(name.upper(), name)
+        return self.sets.get(first, self.of_elements.get(first))
 
 
 def read(path: Path) -> RawMesh:
@@ -102,9 +117,10 @@ def _read(content: _Content, keyword: str, parameters: dict[str, str], body: str
         content.elements.append(rows)
         content.n_elements += len(rows)
         if "ELSET" in parameters:
-            content.of_elements.setdefault(parameters["ELSET"], []).append(rows[:, 0])
+            name = content.defined(parameters["ELSET"])
+            content.of_elements.setdefault(name, []).append(rows[:, 0])
     elif keyword == "ELSET":
-        name = parameters.get("ELSET", "")
+        name = content.defined(parameters.get("ELSET", ""))
         members = _members(content, body, is_generated="GENERATE" in parameters)
         content.allowance.spend(members.nbytes)
         content.sets.setdefault(name, []).append(members)
@@ -117,6 +133,8 @@ def _check_parameters(keyword: str, parameters: dict[str, str]) -> None:
     unknown = sorted(parameters.keys() - set(_PARAMETERS.get(keyword, parameters)))
     if unknown:
         raise ValueError(f"the parameter {unknown[0][:40]} of *{keyword} is not known")
+    if (system := parameters.get("SYSTEM", "R")).upper() != "R" and keyword == "NODE":
+        raise ValueError(f"*NODE has SYSTEM={system[:20]}: give the nodes in Cartesian coordinates")
 
 
 def _parameters(text: str) -> dict[str, str]:
@@ -141,7 +159,7 @@ def _members(content: _Content, body: str, *, is_generated: bool) -> Array:
     if words and not words[0].isdecimal():
         parts = []
         for word in dict.fromkeys(words):
-            known = content.sets.get(word, content.of_elements.get(word))
+            known = content.members(word)
             if known is None:
                 raise ValueError(f"a set is made of {word[:40]!r}, which is not given")
             parts += known
@@ -169,8 +187,9 @@ def _numbers(keyword: str, body: str) -> Array:
 
 
 def _integers(keyword: str, body: str) -> Array:
+    numbers = _numbers(keyword, body)
     try:
-        return integers(_numbers(keyword, body))
+        return integers(numbers)
     except ValueError as error:
         raise ValueError(f"*{keyword} {error}") from error
 
@@ -187,6 +206,11 @@ def _raw(content: _Content) -> RawMesh:
         Block(kind, number.rows(rows[:, 1:]), tags[start : start + len(rows)])
         for kind, rows, start in zip(content.kinds, content.elements, starts, strict=False)
     ]
+    if content.respelled:
+        raw.warnings.append(
+            "capitals do not count in names of sets, the first spelling is kept: "
+            + ", ".join(dict.fromkeys(content.respelled[:_MOST_NAMED]))
+        )
     raw.warnings.append(
         "Abaqus input has neither counts nor an end, so a file that was cut cannot be told: "
         f"{len(raw.points)} points and {len(tags)} elements were read"
