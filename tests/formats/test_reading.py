@@ -348,3 +348,14 @@ def test_an_entity_in_several_groups_has_the_tag_of_the_first(tmp_path):
     mesh, _, report = formats.read_with_report(path)
     assert mesh.cell_tags.tolist() == [6]
     assert report.warnings == ("1 entity(s) are in several physical groups, the first is kept",)
+
+
+def test_names_of_files_in_medit_are_no_keywords(tmp_path):
+    text = (
+        'MeshVersionFormatted 2\nDimension 2\nGeometry "my End # Part.mesh"\nVertices\n3\n0 0 0\n'
+        '1 0 0\n0 1 0\nIdentifier\n"Vertices of Mesh"\nTriangles\n1\n1 2 3 7\nEnd\n'
+    )
+    (tmp_path / "m.mesh").write_text(text)
+    mesh, _, report = formats.read_with_report(tmp_path / "m.mesh")
+    assert mesh.cell_tags.tolist() == [7]
+    assert report.warnings == ("not known and not read: the section Geometry, Identifier",)

@@ -23,6 +23,8 @@ from .notes import note_of
 from .text_rows import integers, parsed, printed
 
 _KEYWORD = re.compile(r"(?<![\w.+-])(?!Inf|Nan|NaN)([A-Z][a-z][A-Za-z0-9]+)")
+# Names of files, where a keyword or a # would be none, and comments.
+_NO_CONTENT = re.compile(r'"[^"\n]*"|#.*')
 # Blanks are no line breaks here: a run of empty lines would be searched from each of them.
 _NOTE = re.compile(r"^[ \t]*#[ \t]*anistar:(\w+) (.*)$", re.MULTILINE)
 _FIRST, _LAST = "MeshVersionFormatted", "End"
@@ -30,7 +32,7 @@ _FIRST, _LAST = "MeshVersionFormatted", "End"
 
 def from_text(text: str) -> Container:
     """Return the content of a text file; raise ValueError if it is not what it says."""
-    sections = _sections(re.sub(r"#.*", "", text))
+    sections = _sections(_NO_CONTENT.sub("", text))
     if "Dimension" not in sections:
         raise ValueError("it has no Dimension")
     container = Container(dim=_dimension(sections["Dimension"]), notes=_notes(text))
