@@ -1,5 +1,7 @@
 """Files as other programs write them are read to the last bit that they hold."""
 
+import re
+
 import numpy as np
 import pytest
 from foreign_files import GMSH, MESHIO, gmsh_4, sample, write_with_meshio
@@ -219,6 +221,19 @@ def test_what_is_no_field_in_legacy_vtk_is_told(tmp_path, is_text):
         assert np.allclose(fields["v"].values, mesh.points + 1)
         told = "CELL_DATA words, POINT_DATA rgb, POINT_DATA my places, POINT_DATA ids"
         assert f"no field and not read: the array {told}" in report.warnings
+
+
+def test_information_may_come_before_the_numbers_of_an_array(tmp_path):
+    mesh = square(1)
+    path = tmp_path / "m.vtu"
+    formats.write(path, mesh, {"u": mesh.points[:, 0]})
+    key = '<InformationKey name="L2" location="x" length="1"><Value index="0">3</Value>'
+    text, n = re.subn(r"(<DataArray[^>]*[^/]>)", rf"\1 {key}</InformationKey>", path.read_text())
+    assert n > 4
+    path.write_text(text)
+    got, fields = formats.read(path)
+    assert np.array_equal(got.cells, mesh.cells)
+    assert np.array_equal(fields["u"].values, mesh.points[:, 0])
 
 
 def test_pieces_are_put_together(tmp_path):

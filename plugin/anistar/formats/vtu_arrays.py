@@ -81,9 +81,9 @@ def numbers_of(element: Element, encoding: Encoding) -> Array:
         raise ValueError(f"the array {name!r} is of type {element.get('type')}, not of numbers")
     form = element.get("format", "ascii")
     if form == "ascii":
-        values = _from_text(element.text or "", name, kind)
+        values = _from_text(_text(element), name, kind)
     elif form == "binary":
-        text = "".join((element.text or "").split()).encode("ascii", errors="replace")
+        text = "".join(_text(element).split()).encode("ascii", errors="replace")
         payload, end = _payload(_Bytes(text, raw=False), 0, encoding)
         if end != len(text):
             raise ValueError(f"the array {name!r} does not end where its header says")
@@ -98,6 +98,11 @@ def numbers_of(element: Element, encoding: Encoding) -> Array:
     if width < 1 or len(values) % width:
         raise ValueError(f"the array {name!r} has {len(values)} numbers, no rows of {width}")
     return values if width == 1 else values.reshape(-1, width)
+
+
+def _text(element: Element) -> str:
+    """Return the text of an element, also what is behind the keys with information in it."""
+    return "".join([element.text or "", *(child.tail or "" for child in element)])
 
 
 def _from_text(text: str, name: str, kind: str) -> Array:
