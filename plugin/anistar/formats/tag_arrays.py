@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import FormatError
 from .notes import Names, names_of, note_of
 from .raw import Array, RawMesh
+from .reading import reading
 
 # The integer array of tags in the files that we write; where it is present no other counts.
 TAGS = "medit:ref"
@@ -37,6 +38,19 @@ def refuse_reserved(content: RawMesh, path: Path) -> None:
             raise FormatError(
                 f"cannot write {path}: {name!r} is no name for a field, tags are stored under it"
             )
+
+
+def read_tagged(path: Path, mesh_in: Callable[[bytes], RawMesh]) -> RawMesh:
+    """Read a file of which a function knows the layout, and take its tags.
+
+    Raises
+    ------
+    FormatError
+    """
+    with reading(path):
+        raw = mesh_in(path.read_bytes())
+        take_tags(raw)
+    return raw
 
 
 def take_tags(raw: RawMesh) -> None:

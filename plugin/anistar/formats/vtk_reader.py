@@ -18,8 +18,7 @@ import numpy as np
 
 from .cursor import Cursor
 from .raw import Array, RawMesh, not_read
-from .reading import reading
-from .tag_arrays import TAGS, take_tags
+from .tag_arrays import TAGS, read_tagged
 from .vtk_arrays import Arrays, count_in, word_in
 from .vtk_cells import blocks_of, ends_of_rows
 from .vtk_numbers import LegacyNumbers
@@ -36,10 +35,7 @@ def read(path: Path) -> RawMesh:
     FormatError
         If the file is damaged or holds another kind of data.
     """
-    with reading(path):
-        raw = _mesh(path.read_bytes())
-        take_tags(raw)
-    return raw
+    return read_tagged(path, _mesh)
 
 
 @dataclass

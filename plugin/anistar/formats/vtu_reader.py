@@ -10,11 +10,10 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from .raw import Array, Block, RawMesh, not_read
-from .reading import reading
-from .tag_arrays import NAMES, TAGS, decoded_names, take_tags
+from .tag_arrays import NAMES, TAGS, decoded_names, read_tagged
 from .vtk_cells import blocks_of
 from .vtu_arrays import Encoding, numbers_of
-from .xml_tree import attribute, count, root_of
+from .xml_tree import attribute, count, only_child, root_of
 
 _APPENDED = re.compile(rb"<AppendedData\b([^<>]*)>\s*_")
 _NOT_NUMBERS = ("String", "Bit")
@@ -28,10 +27,7 @@ def read(path: Path) -> RawMesh:
     FormatError
         If the file is damaged or holds another kind of data.
     """
-    with reading(path):
-        raw = _mesh(path.read_bytes())
-        take_tags(raw)
-    return raw
+    return read_tagged(path, _mesh)
 
 
 def _mesh(data: bytes) -> RawMesh:
@@ -40,7 +36,7 @@ def _mesh(data: bytes) -> RawMesh:
     if root.tag != "VTKFile" or root.get("type") != "UnstructuredGrid":
         raise ValueError(f"it holds {root.get('type')!r}: save it as an unstructured grid")
     encoding = Encoding.of(root, appended, raw=is_raw, n_bytes=len(data))
-    grid = _only_child(root, "UnstructuredGrid")
+    grid = only_child(root, "UnstructuredGrid")
     pieces = grid.findall("Piece")
     if not pieces:
         raise ValueError("it has no Piece")
@@ -73,13 +69,6 @@ def _parted(data: bytes) -> tuple[bytes, bytes, bool]:
     return data[: found.start()] + rest, appended if is_raw else appended.rstrip(), is_raw
 
 
-def _only_child(parent: Element, tag: str) -> Element:
-    children = parent.findall(tag)
-    if len(children) != 1:
-        raise ValueError(f"it has {len(children)} elements {tag} where there is one")
-    return children[0]
-
-
 def _check_tags(parent: Element, known: set[str]) -> None:
     for child in parent:
         if child.tag not in known:
@@ -89,10 +78,10 @@ def _check_tags(parent: Element, known: set[str]) -> None:
 def _piece(piece: Element, encoding: Encoding, skipped: list[str]) -> RawMesh:
     _check_tags(piece, {"Points", "Cells", "PointData", "CellData"})
     n_points, n_cells = count(piece, "NumberOfPoints"), count(piece, "NumberOfCells")
-    points = numbers_of(_only_child(_only_child(piece, "Points"), "DataArray"), encoding)
+    points = numbers_of(only_child(only_child(piece, "Points"), "DataArray"), encoding)
     if points.shape != (n_points, 3):
         raise ValueError(f"it announces {n_points} points, {points.shape} numbers follow")
-    cells = _arrays(_only_child(piece, "Cells"), encoding, skipped)
+    cells = _arrays(only_child(piece, "Cells"), encoding, skipped)
     missing = {"types", "offsets", "connectivity"} - cells.keys()
     if missing:
         raise ValueError(f"its cells have no array {sorted(missing)[0]!r}")
@@ -111,7 +100,7 @@ def _data(
 ) -> dict[str, Array]:
     if piece.find(tag) is None:
         return {}
-    arrays = _arrays(_only_child(piece, tag), encoding, skipped)
+    arrays = _arrays(only_child(piece, tag), encoding, skipped)
     for name, values in arrays.items():
         if len(values) != length:
             raise ValueError(f"{tag} {name!r} has {len(values)} values, not {length}")

@@ -16,11 +16,10 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from .raw import Array, Block, RawMesh
-from .reading import reading
 from .rows import leading_rows
-from .tag_arrays import take_tags
+from .tag_arrays import read_tagged
 from .text_rows import parsed
-from .xml_tree import attribute, root_of
+from .xml_tree import attribute, only_child, root_of
 
 # XDMF's number of a type in a mixture -> (kind, columns before the points, columns in all); a
 # polyline has its number of points behind the type.
@@ -62,10 +61,7 @@ def read(path: Path) -> RawMesh:
     FormatError
         If the file is damaged, holds another kind of grid, or has its numbers elsewhere.
     """
-    with reading(path):
-        raw = _mesh(path.read_bytes())
-        take_tags(raw)
-    return raw
+    return read_tagged(path, _mesh)
 
 
 def _mesh(data: bytes) -> RawMesh:
@@ -79,8 +75,8 @@ def _mesh(data: bytes) -> RawMesh:
     for child in grid:
         if child.tag not in ("Topology", "Geometry", "Attribute", *_IGNORED):
             raise ValueError(f"the element {child.tag} in Grid is not known")
-    points = _points(_only(grid, "Geometry"))
-    kinds, rows = _cells(_only(grid, "Topology"))
+    points = _points(only_child(grid, "Geometry"))
+    kinds, rows = _cells(only_child(grid, "Topology"))
     n_cells = sum(len(part) for part in rows)
     on_points, on_cells = (
         _data(grid, center, length) for center, length in (("Node", len(points)), ("Cell", n_cells))
@@ -95,18 +91,11 @@ def _mesh(data: bytes) -> RawMesh:
     return RawMesh(points, blocks, point_data=on_points, six="xdmf")
 
 
-def _only(grid: Element, tag: str) -> Element:
-    children = grid.findall(tag)
-    if len(children) != 1:
-        raise ValueError(f"it has {len(children)} elements {tag} where there is one")
-    return children[0]
-
-
 def _points(geometry: Element) -> Array:
     kind = geometry.get("GeometryType", geometry.get("Type", "XYZ"))
     if kind not in _DIMENSIONS:
         raise ValueError(f"the geometry {kind!r} is not known, only XY and XYZ")
-    values = _numbers(_only(geometry, "DataItem")).astype(np.float64)
+    values = _numbers(only_child(geometry, "DataItem")).astype(np.float64)
     if values.ndim != 2 or values.shape[1] != _DIMENSIONS[kind]:
         raise ValueError(f"its points have the shape {values.shape}, which is not {kind}")
     return values
@@ -116,7 +105,7 @@ def _cells(topology: Element) -> tuple[list[str], list[Array]]:
     """Return runs of cells of one kind, and their points."""
     _check_topology(topology)
     kind = topology.get("TopologyType", topology.get("Type", "")).lower()
-    values = _numbers(_only(topology, "DataItem"))
+    values = _numbers(only_child(topology, "DataItem"))
     if values.dtype.kind not in "iu":
         raise ValueError("its topology is not of integers")
     if kind == "mixed":
@@ -165,7 +154,7 @@ def _data(grid: Element, center: str, length: int) -> dict[str, Array]:
         if element.get("Center", "Node") != center:
             continue
         name = attribute(element, "Name")
-        values = _numbers(_only(element, "DataItem"))
+        values = _numbers(only_child(element, "DataItem"))
         if name in arrays or values.ndim == 0 or len(values) != length:
             raise ValueError(
                 f"the attribute {name!r} comes twice, or has {values.shape} values for {length}"

@@ -28,6 +28,14 @@ def _refuse_entity(name: str, *_: object) -> None:
     raise ValueError(f"it defines the entity {name[:40]!r}, which no mesh needs")
 
 
+def only_child(parent: ElementTree.Element, tag: str) -> ElementTree.Element:
+    """Return the child of this kind, of which there must be exactly one."""
+    children = parent.findall(tag)
+    if len(children) != 1:
+        raise ValueError(f"it has {len(children)} elements {tag} where there is one")
+    return children[0]
+
+
 def attribute(element: ElementTree.Element, name: str) -> str:
     """Return an attribute that must be there."""
     value = element.get(name)
