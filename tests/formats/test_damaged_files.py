@@ -131,6 +131,7 @@ def test_our_own_files_miss_what_is_cut_off_behind_a_section(tmp_path, suffix):
         ),
         ("m.inp", "*NODE\n1, 0, 0\n*INCLUDE, INPUT=/etc/passwd\n", "file, which is not opened"),
         ("m.inp", "*NODE, INPUT=/etc/passwd\n", "file, which is not opened"),
+        ("m.inp", "*SYSTEM\n1, 0, 0\n*NODE\n1, 0, 0\n", "*SYSTEM, which moves its nodes"),
         ("m.inp", "*NODE, SYSTEM=C\n1, 0, 0\n", "*NODE has SYSTEM=C: give the nodes in Cartesian"),
         (
             "m.inp",

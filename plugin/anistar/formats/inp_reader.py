@@ -101,7 +101,7 @@ def _mesh(text: str) -> RawMesh:
 
 
 def _read(content: _Content, keyword: str, parameters: dict[str, str], body: str) -> None:
-    _check_parameters(keyword, parameters)
+    _check_understood(keyword, parameters, body)
     if keyword == "NODE":
         content.nodes.append(_nodes(body))
     elif keyword == "ELEMENT":
@@ -126,7 +126,7 @@ def _read(content: _Content, keyword: str, parameters: dict[str, str], body: str
         content.sets.setdefault(name, []).append(members)
 
 
-def _check_parameters(keyword: str, parameters: dict[str, str]) -> None:
+def _check_understood(keyword: str, parameters: dict[str, str], body: str) -> None:
     """Raise if a keyword says what is not understood here, or sends to another file."""
     if keyword == "INCLUDE" or (keyword in _PARAMETERS and "INPUT" in parameters):
         raise ValueError("it includes another file, which is not opened: put it in here")
@@ -135,6 +135,8 @@ def _check_parameters(keyword: str, parameters: dict[str, str]) -> None:
         raise ValueError(f"the parameter {unknown[0][:40]} of *{keyword} is not known")
     if (system := parameters.get("SYSTEM", "R")).upper() != "R" and keyword == "NODE":
         raise ValueError(f"*NODE has SYSTEM={system[:20]}: give the nodes in Cartesian coordinates")
+    if keyword == "SYSTEM" and body.strip():
+        raise ValueError("it has *SYSTEM, which moves its nodes: give them in one system")
 
 
 def _parameters(text: str) -> dict[str, str]:
