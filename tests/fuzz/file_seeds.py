@@ -26,6 +26,40 @@ two triangles and a line
 *ELEMENT, TYPE=T2D2, ELSET=wall
 3, 1, 2
 """
+LEGACY_VTK = """# vtk DataFile Version 4.2
+with all that is no field
+ASCII
+
+DATASET UNSTRUCTURED_GRID
+FIELD FieldData 1
+meta 1 1 string
+hello%20world
+
+POINTS 4 double
+0 0 0 1 0 0 1 1 0 0 1 0
+CELLS 2 8
+3 0 1 2
+3 0 2 3
+CELL_TYPES 2
+5
+5
+CELL_DATA 2
+GLOBAL_IDS ids vtkIdType
+0 1
+FIELD FieldData 2
+some%20words 1 2 string
+one
+two
+bits 1 2 bit
+0 1
+POINT_DATA 4
+COLOR_SCALARS rgb 3
+0 .5 1 0 .5 1 0 .5 1 0 .5 1
+VECTORS v double
+0 0 0 1 0 0 1 1 0 0 1 0
+TEXTURE_COORDINATES places 2 double
+0 0 1 0 1 1 0 1
+"""
 
 
 @cache
@@ -33,7 +67,8 @@ def seeds():
     """Pairs of a name and the files by their names; the first is the one that is read."""
     with tempfile.TemporaryDirectory() as folder:
         found = [*_own(Path(folder)), *_foreign(Path(folder))]
-    return [*found, ("inp", {"m.inp": ABAQUS.encode()})]
+    by_hand = [("inp", {"m.inp": ABAQUS.encode()}), ("vtk by hand", {"m.vtk": LEGACY_VTK.encode()})]
+    return [*found, *by_hand]
 
 
 def _own(folder):

@@ -9,10 +9,11 @@ from fuzz_workers import outcomes
 from anistar import formats
 
 N_CASES = 300
+SEED = 7
 
 
 def test_damaged_files_are_refused_with_their_name_or_give_what_they_held():
-    rows = list(outcomes(range(N_CASES), seed=6, largest=None, timeout=60.0, mode="files"))
+    rows = list(outcomes(range(N_CASES), seed=SEED, largest=None, timeout=60.0, mode="files"))
     assert len(rows) == N_CASES
     failed = [row for row in rows if row["verdict"] in FAILURES]
     assert [(row["number"], row["verdict"], row["message"]) for row in failed] == []
@@ -20,10 +21,10 @@ def test_damaged_files_are_refused_with_their_name_or_give_what_they_held():
 
 
 def test_every_format_and_every_damage_has_its_turn():
-    cases = [make_file_case(6, number) for number in range(N_CASES)]
+    cases = [make_file_case(SEED, number) for number in range(N_CASES)]
     assert {case.kind for case in cases} == {name for name, _ in seeds()}
     assert {case.mutation for case in cases} == {mutate.__name__ for mutate in MUTATIONS}
-    again = [make_file_case(6, number) for number in range(N_CASES)]
+    again = [make_file_case(SEED, number) for number in range(N_CASES)]
     assert [case.data for case in again] == [case.data for case in cases]
 
 
