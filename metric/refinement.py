@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from .algebra import congruent, eigh, lower_factor
 from .checks import check_metric, check_result
 from .combination import check_step
-from .graph import mesh_edges
 from .implied import implied_metric
+from .kernels.pieces import pieces
 from .kernels.spectra import compose, product
 from .mesh import MeshLike
 
@@ -88,9 +88,9 @@ def refinement_limited(mesh: MeshLike, M: Array, ratio: float | str) -> Refineme
     n = len(mesh.points)
     nowhere = Refinement(metric=M, is_limited=np.zeros(n, dtype=bool), excess=1.0)
     if isinstance(ratio, str):
-        pieces, fewest = _pieces(mesh, M)
+        most, fewest = pieces(mesh, M)
         allowed = RESOLVED * fewest
-        rows = np.flatnonzero(pieces > allowed)
+        rows = np.flatnonzero(most > allowed)
     else:
         allowed, rows = np.full(n, float(ratio)), np.arange(n)
     if len(rows) == 0:
@@ -106,17 +106,3 @@ def refinement_limited(mesh: MeshLike, M: Array, ratio: float | str) -> Refineme
     nowhere.is_limited[limited] = True
     excess = float(np.sqrt(values[is_held, -1] / held[is_held, -1]).max())
     return Refinement(metric=found, is_limited=nowhere.is_limited, excess=excess)
-
-
-def _pieces(mesh: MeshLike, M: Array) -> tuple[Array, Array]:
-    """Into how many pieces the longest edge of a point is divided, and at least at a neighbour."""
-    a, b = mesh_edges(mesh).T
-    v = mesh.points[b] - mesh.points[a]
-    pieces = np.ones(len(mesh.points))
-    for end in (a, b):
-        length = np.sqrt(np.einsum("ei,eij,ej->e", v, M[end], v))
-        np.maximum.at(pieces, end, length)
-    fewest = pieces.copy()
-    np.minimum.at(fewest, a, pieces[b])
-    np.minimum.at(fewest, b, pieces[a])
-    return pieces, fewest

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from meshes import cube, square
 from metric_meshes import box, is_at_least, random_metrics
 
 from anistar import metric
@@ -11,6 +12,7 @@ from anistar.metric import jacobi, simultaneous_reduction
 from anistar.metric.algebra import log_determinant
 from anistar.metric.kernels import compiled
 from anistar.metric.kernels.intersection import intersect as compiled_intersect
+from anistar.metric.kernels.pieces import pieces
 from anistar.metric.kernels.spectra import spectra
 
 dims = st.sampled_from([2, 3])
@@ -216,3 +218,15 @@ def test_a_mesh_with_more_complexity_than_the_metric_is_stretched_first(dim):
     np.testing.assert_allclose(metric.limited_coarsening(mesh, coarse, 2.0), coarse, rtol=1e-12)
     with pytest.raises(ValueError, match="ratio must be above 1, got 1"):
         metric.limited_coarsening(mesh, own, 1.0)
+
+
+@pytest.mark.parametrize("make", [lambda: square(5), lambda: cube(3)])
+def test_pieces_of_edges_are_counted_alike_with_and_without_the_core(make, monkeypatch):
+    mesh = make()
+    rng = np.random.default_rng(1)
+    A = rng.normal(size=(mesh.n_points, mesh.dim, mesh.dim))
+    M = 30 * np.einsum("nij,nkj->nik", A, A) + np.eye(mesh.dim)
+    with_core = pieces(mesh, M)
+    monkeypatch.setattr(compiled, "core", None)
+    for found, expected in zip(with_core, pieces(mesh, M), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=1e-12)

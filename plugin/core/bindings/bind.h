@@ -13,6 +13,7 @@ void bind_facet_shapes(nanobind::module_ &module);
 void bind_gradation(nanobind::module_ &module);
 void bind_locator(nanobind::module_ &module);
 void bind_nearest(nanobind::module_ &module);
+void bind_pieces(nanobind::module_ &module);
 void bind_remesh(nanobind::module_ &module);
 void bind_spectra(nanobind::module_ &module);
 void bind_supermesh(nanobind::module_ &module);

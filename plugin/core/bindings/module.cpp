@@ -10,6 +10,7 @@ NB_MODULE(_core, module) {
   anistar::bindings::bind_gradation(module);
   anistar::bindings::bind_locator(module);
   anistar::bindings::bind_nearest(module);
+  anistar::bindings::bind_pieces(module);
   anistar::bindings::bind_remesh(module);
   anistar::bindings::bind_spectra(module);
   anistar::bindings::bind_supermesh(module);
