@@ -234,7 +234,7 @@ def _judged(step: Step, before: list[Step], options: LoopOptions) -> tuple[Step,
         )
     ):
         return replace(step, settled=True), None
-    if options.keep is None:
+    if options.keep is None or step.iteration >= options.max_iterations:
         return step, None
     wanted = metric_for(step.mesh, step.fields, _stages([*before, step], options))
     if needs_adaptation(step.mesh, wanted.metric, options.keep):

@@ -289,6 +289,17 @@ def test_the_repeats_of_a_complexity_end_when_the_mesh_may_be_kept():
     assert not needs_adaptation(last.mesh, metric, KeepOptions(under=0.5, over=1.0, longest=6.0))
 
 
+def test_the_last_solve_is_not_lost_where_nothing_is_left_to_be_kept():
+    options = LoopOptions(
+        complexities=[150] * 3, max_iterations=1, settled=None, keep=KeepOptions(under=0.0)
+    )
+    seen = []
+    loop = adapt_loop(interpolate, square(8), options, callback=seen.append)
+    assert loop.stop_reason == "max_iterations 1 reached"
+    assert [step.iteration for step in seen] == [0, 1]
+    assert validate(loop.steps[-1].mesh, square(8)) == []
+
+
 def test_a_loop_that_goes_on_remembers_which_repeats_it_left_out():
     options = LoopOptions(complexities=[150] * 5 + [300], settled=Settled(points=0.1, error=0.5))
     whole = adapt_loop(interpolate, square(8), options)
