@@ -2,7 +2,13 @@
 
 from .confidence import RecoveryConfidence
 from .options import METHODS, RecoveryOptions
-from .recover import hessians_of_fields, recover_gradient, recover_hessian, recovery_confidence
+from .recover import (
+    hessian_and_noise,
+    hessians_of_fields,
+    recover_gradient,
+    recover_hessian,
+    recovery_confidence,
+)
 from .spaces import Samples, p2_nodes, read_fields
 
 __all__ = [
@@ -10,6 +16,7 @@ __all__ = [
     "RecoveryConfidence",
     "RecoveryOptions",
     "Samples",
+    "hessian_and_noise",
     "hessians_of_fields",
     "p2_nodes",
     "read_fields",

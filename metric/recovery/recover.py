@@ -13,6 +13,7 @@ from ..graph import VertexGraph
 from ..mesh import MeshLike
 from .confidence import RecoveryConfidence
 from .cut import joined_gradients, joined_hessians, joined_worst
+from .larger_patches import is_measurable
 from .methods import (
     RecoveredHessian,
     hessian_as_found,
@@ -112,6 +113,26 @@ def recover_hessian(
        2007.
     """
     return _by_field(mesh, u, space, RecoveryOptions(method=method, **options), _joined_hessian)
+
+
+def hessian_and_noise(mesh: MeshLike, u: Any, *, space: str | None = None) -> tuple[Array, float]:
+    """Recover the Hessian of a scalar, and the noise of its values that was kept out of it.
+
+    Parameters
+    ----------
+    mesh, u, space
+        As in `recover_hessian`, which returns the same Hessian; of one scalar.
+
+    Returns
+    -------
+    hessian : ndarray (n, d, d)
+    noise : float
+        Standard deviation of the values; 0 where round-off explains it.
+    """
+    setting = setting_of(mesh, read_samples(mesh, u, space=space), RecoveryOptions())
+    recovered = recovered_hessian(setting)
+    noise = float(recovered.noise[0]) if is_measurable(setting, recovered.noise) else 0.0
+    return joined_hessians(setting.cut, recovered.damped)[:, 0], noise
 
 
 def recovery_confidence(

@@ -37,7 +37,7 @@ class LoopOptions:
         Target complexity of each adaptation; repeat one to iterate at a fixed complexity.
     target_error : float, optional
         Stop when the estimated L2 norm of the P1 interpolation error of every metric field is
-        at most this.
+        at most this; the noise of a solver counts, see `interpolation_error`.
     qoi : callable, optional
         ``qoi(mesh, fields)`` returns the quantity of interest, recorded in each step.
     rtol : float, optional

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from meshes import cube, rectangle_with_jitter, square
 
 from anistar.interpolation_error import interpolation_error, l2_error, l2_norm, simplex_rule
+from anistar.metric.recovery import hessian_and_noise
 
 coefficient = st.floats(-3, 3)
 
@@ -51,6 +52,43 @@ def test_the_estimate_comes_close_for_a_smooth_function():
     mesh, u = square(30), lambda x: np.sin(3 * x[..., 0]) * np.cos(2 * x[..., 1])
     values = u(mesh.points)
     assert interpolation_error(mesh, values) == pytest.approx(l2_error(mesh, values, u), rel=0.02)
+
+
+@pytest.mark.parametrize("on", ["points", "cells"])
+@pytest.mark.parametrize("make", [lambda: rectangle_with_jitter(24), lambda: cube(7)])
+def test_pure_noise_is_an_error_of_its_size(make, on):
+    mesh, rng = make(), np.random.default_rng(0)
+    points = rng.standard_normal(mesh.n_points)
+    true = l2_error(mesh, points, lambda x: 0 * x[..., 0])
+    assert true == pytest.approx((2 / (mesh.dim + 2)) ** 0.5, rel=0.15)
+    values = points if on == "points" else rng.standard_normal(mesh.n_cells)
+    assert interpolation_error(mesh, values, on=on) == pytest.approx(true, rel=0.35)
+    assert interpolation_error(mesh, 1e-6 * values, on=on) == pytest.approx(1e-6 * true, rel=0.35)
+
+
+@pytest.mark.parametrize("size", [0.05, 0.2, 1.0])
+def test_more_noise_is_a_larger_error(size):
+    mesh, u = square(24), lambda x: np.tanh(10 * (x[..., 0] - 0.5))
+    noise = np.random.default_rng(1).standard_normal(mesh.n_points)
+    noisy = u(mesh.points) + size * noise
+    estimate = interpolation_error(mesh, noisy)
+    assert estimate > interpolation_error(mesh, u(mesh.points) + size / 4 * noise)
+    assert estimate == pytest.approx(l2_error(mesh, noisy, u), rel=0.4)
+
+
+@pytest.mark.parametrize("on", ["points", "cells"])
+def test_constants_have_no_noise(on):
+    mesh = rectangle_with_jitter(6)
+    count = mesh.n_points if on == "points" else mesh.n_cells
+    assert interpolation_error(mesh, np.full(count, 0.3), on=on) == 0.0
+
+
+def test_features_are_no_noise():
+    """The estimate is that of the Hessian alone, as it was measured for clean fields."""
+    mesh = square(30)
+    for u in (np.exp(mesh.points.sum(axis=1)), np.tanh(20 * (mesh.points[:, 0] - 0.3))):
+        _, noise = hessian_and_noise(mesh, u)
+        assert noise < 1e-2 * interpolation_error(mesh, u)
 
 
 @pytest.mark.parametrize("dim", [2, 3])

@@ -68,6 +68,23 @@ def test_the_target_error_is_reached_by_doubling_the_complexity():
     assert [step.complexity for step in loop.steps[1:4]] == [100, 200, 400]
 
 
+@pytest.mark.parametrize("on", ["points", "cells"])
+def test_noise_reaches_no_target_error_below_it(on):
+    rng = np.random.default_rng(0)
+
+    def solve(mesh, fields):
+        count = mesh.n_points if on == "points" else mesh.n_cells
+        return {"u": Field(rng.standard_normal(count), on)}
+
+    adapt = AdaptOptions(metric=MetricOptions(target_complexity=100), metric_fields=["u"])
+    options = LoopOptions(adapt=adapt, target_error=1e-6, max_iterations=2)
+    loop = adapt_loop(solve, square(12), options)
+    assert loop.stop_reason == "max_iterations 2 reached"
+    for step in loop.steps:
+        assert 0.3 < step.error["u"] < 1.5
+        assert validate(step.mesh, square(12)) == []
+
+
 @pytest.mark.parametrize(
     "options",
     [
