@@ -1,4 +1,4 @@
-"""L2 errors of P1 fields: estimated from a recovered Hessian and the noise, or against an exact function."""
+"""L2 errors of P1 fields: estimated from the Hessian and the noise, or by an exact function."""
 
 from __future__ import annotations
 

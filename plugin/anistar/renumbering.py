@@ -23,7 +23,8 @@ Numbers = NDArray[np.int64]
 # How far a file may put a point, relative to the extent of the mesh: what six digits keep of it.
 ROUNDING = 1e-5
 
-# Nor farther than this part of the way to the next point, so that there is one nearest point.
+# Where the order has changed, nor farther than this part of the way to the next point, so that
+# there is one nearest point.
 NEAR = 0.25
 
 
@@ -43,8 +44,17 @@ class Renumbering:
     cells: Numbers
 
     def carried(self, fields: Mapping[str, Field]) -> dict[str, Field]:
-        """Return fields that are in the other order in the order of the mesh."""
-        rows = {"points": self.points, "cells": self.cells, "cell_nodes": self.cells}
+        """Return fields that are in the other order in the order of the mesh.
+
+        Raises
+        ------
+        ValueError
+            If a field has values at the nodes of cells, whose order within a cell is not known.
+        """
+        rows = {"points": self.points, "cells": self.cells}
+        for name, field in fields.items():
+            if field.on not in rows:
+                raise ValueError(f"field {name!r} is on {field.on}, not on points or cells")
         return {
             name: dataclasses.replace(field, values=field.values[rows[field.on]])
             for name, field in fields.items()
@@ -55,7 +65,8 @@ def renumbering(mesh: Mesh, other: Mesh) -> Renumbering:
     """Find out how another mesh numbers the points and cells of a mesh.
 
     Points are the same when their coordinates are equal or, where a file has rounded them,
-    nearest to each other within a tolerance; cells are the same when their points are.
+    nearest to each other within a tolerance; cells are the same when their points are. Where
+    each has kept its number, points may be nearer to each other than the tolerance.
 
     Parameters
     ----------
@@ -77,6 +88,8 @@ def renumbering(mesh: Mesh, other: Mesh) -> Renumbering:
             f"it has {other.n_points} points and {other.n_cells} cells in {other.dim}D, the mesh "
             f"has {mesh.n_points} and {mesh.n_cells} in {mesh.dim}D"
         )
+    if _kept_its_numbers(mesh, other):
+        return Renumbering(np.arange(mesh.n_points), np.arange(mesh.n_cells))
     points = _equal_rows(mesh.points, other.points)
     if points is None:
         points = _nearest_points(mesh.points, other.points)
@@ -88,6 +101,18 @@ def renumbering(mesh: Mesh, other: Mesh) -> Renumbering:
         where = _listed(mesh.points[mesh.cells[at]].mean(axis=0))
         raise ValueError(f"it has the points of the mesh, but not its cell {at} at ({where})")
     return Renumbering(points, cells)
+
+
+def _kept_its_numbers(mesh: Mesh, other: Mesh) -> bool:
+    """Return whether all points and cells are where they were, but for rounding."""
+    distance = vector_lengths(other.points - mesh.points)
+    return bool((distance <= _rounding(mesh.points)).all()) and np.array_equal(
+        np.sort(mesh.cells, axis=1), np.sort(other.cells, axis=1)
+    )
+
+
+def _rounding(points: Float) -> float:
+    return float(ROUNDING * np.ptp(points, axis=0).max())
 
 
 def _equal_rows(rows: NDArray[Any], others: NDArray[Any]) -> Numbers | None:
@@ -110,7 +135,7 @@ def _nearest_points(points: Float, others: Float) -> Numbers:
     itself = next_points[:, 0] == np.arange(len(points))
     neighbours = np.where(itself, next_points[:, 1], next_points[:, 0])
     spacing = vector_lengths(points[neighbours] - points)
-    allowed = np.minimum(ROUNDING * np.ptp(points, axis=0).max(), NEAR * spacing)
+    allowed = np.minimum(_rounding(points), NEAR * spacing)
     distance = vector_lengths(others - points[nearest])
     excess = distance - allowed[nearest]
     if (excess > 0).any():

@@ -8,6 +8,7 @@ import anistar
 from anistar.fields import Field
 from anistar.mesh import Mesh
 from anistar.renumbering import renumbering
+from anistar.topology import unique_edges, vector_lengths
 
 MESHES = {"square": square, "jitter": rectangle_with_jitter, "cube": two_region_cube}
 
@@ -80,6 +81,33 @@ def test_rounded_coordinates_are_matched_also_in_thin_layers(name, height, digit
         points = other.points + rng.uniform(-5e-6, 5e-6, other.points.shape)
     found = renumbering(mesh, Mesh(points=points, cells=other.cells))
     assert np.array_equal(other.points[found.points], mesh.points)
+
+
+def layered():
+    """A turned square with points 1e-6 apart."""
+    base, (cosine, sine) = square(12), (np.cos(0.5), np.sin(0.5))
+    x = 0.5 + np.sign(base.points[:, 0] - 0.5) * 0.5 * np.abs(2 * base.points[:, 0] - 1) ** 7.0
+    points = np.stack([x, base.points[:, 1]], axis=1) @ np.array([[cosine, sine], [-sine, cosine]])
+    return Mesh(points=points, cells=base.cells)
+
+
+def test_six_digits_are_enough_in_the_thinnest_layers_where_nothing_was_renumbered():
+    mesh = layered()
+    begin, end = mesh.points[unique_edges(mesh.cells, mesh.n_points)].transpose(1, 0, 2)
+    assert 1e-6 < vector_lengths(end - begin).min() < 3e-6
+    rounded = np.array([[float(f"{x:.6g}") for x in row] for row in mesh.points])
+    found = renumbering(mesh, Mesh(points=rounded, cells=mesh.cells[:, [1, 2, 0]]))
+    assert np.array_equal(found.points, np.arange(mesh.n_points))
+    assert np.array_equal(found.cells, np.arange(mesh.n_cells))
+    with pytest.raises(ValueError, match="is no point of the mesh"):
+        renumbering(mesh, Mesh(points=rounded[::-1], cells=mesh.n_points - 1 - mesh.cells))
+
+
+def test_values_at_the_nodes_of_cells_are_refused_by_name():
+    mesh = square(2)
+    field = Field(mesh.points[mesh.cells][..., 0], "cell_nodes")
+    with pytest.raises(ValueError, match="field 'q' is on cell_nodes, not on points or cells"):
+        renumbering(mesh, mesh).carried({"q": field})
 
 
 @pytest.mark.parametrize("distance", [1e-4, 1e-2, 0.1])
