@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import shutil
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
@@ -111,6 +112,13 @@ class FileSolver:
             raise FormatError(f"no fields in {solution_file}: {reason}")
         self.count += 1
         return found
+
+    def require_command(self) -> None:
+        """Raise RuntimeError if there is no such command."""
+        if shutil.which(self.command[0]) is None:
+            raise RuntimeError(
+                f"cannot run the solver {self.command[0]!r}: there is no such command"
+            )
 
     def _paths(self) -> tuple[Path, Path]:
         mesh_suffix, solution_suffix = FILE_KINDS[self.kind]

@@ -23,6 +23,9 @@ SERIES = "series.pvd"
 REPORT = "report.json"
 RUNNING = "running"
 
+# Stands for a setting that only one of two versions has.
+ABSENT = "no setting"
+
 # Regular expressions of the names of the files that every loop writes.
 LOOP_FILES = (re.escape(REPORT), re.escape(SERIES), r"series_\d{3,}\.vtu")
 
@@ -91,12 +94,15 @@ class RunFolder:
             If the folder holds files that the run would write, and not `force`, or one of them
             is in `keep`.
         """
-        own = self._own_files(self.settings)
+        own, removed = self._own_files(self.settings), 0
         own.remove_leftovers()
-        if not force:
+        if force:
+            removed = self._own_files(self.settings, self._earlier_settings()).remove(keep)
+        else:
             own.require_none("--resume goes on with it, --force replaces it")
-            return 0
-        return self._own_files(self.settings, self._earlier_settings()).remove(keep)
+        # before any other file, so that what has none was left by something else
+        self._report(Loop((), RUNNING))
+        return removed
 
     def _own_files(self, *settings: Mapping[str, Any]) -> OwnFiles:
         given = [entry.get("format") for entry in settings]
@@ -126,18 +132,22 @@ class RunFolder:
         self._report(Loop(tuple(self.steps), loop.stop_reason))
 
     def load(self) -> list[Step]:
-        """Return the finished steps of an earlier run in this folder, none if there was none.
+        """Return the finished steps of an earlier run in this folder, or begin one.
 
         Raises
         ------
         ValueError
-            If that run had other settings; names the first that differs.
+            If that run had other settings, or was made by another version that had no such
+            setting; names the first that differs.
         FormatError
-            If its files are damaged.
+            If its files are damaged, or there are some, but no report.
         """
         path = self.folder / REPORT
-        self._own_files(self.settings).remove_leftovers()
+        own = self._own_files(self.settings)
+        own.remove_leftovers()
         if not path.is_file():
+            own.require_none(f"there is no {REPORT} to resume from, --force replaces it")
+            self._report(Loop((), RUNNING))
             return []
         with _understood(path):
             report = json.loads(path.read_text(encoding="utf-8"))
@@ -149,6 +159,11 @@ class RunFolder:
 
     def _require_same(self, settings: Mapping[str, Any]) -> None:
         for name, before, now in _differences(settings, self.settings):
+            if ABSENT in (before, now):
+                raise ValueError(
+                    f"the run in {self.folder} is of another version of anistar: {name} was "
+                    f"{before} then and is {now} now; turn it off, or choose another folder"
+                )
             raise ValueError(
                 f"the run in {self.folder} has {name} = {before!r}, not {now!r}: "
                 "resume with the same, or choose another folder"
@@ -166,7 +181,7 @@ class RunFolder:
             qoi=said["qoi"],
             error=said["error"],
             seconds=said["seconds"],
-            settled=said["settled"],
+            settled=said.get("settled", False),  # which earlier versions did not know
         )
 
     def _report(self, loop: Loop) -> None:
@@ -178,8 +193,8 @@ def _differences(before: Any, now: Any, name: str = "") -> Iterator[tuple[str, A
     if isinstance(before, Mapping) and isinstance(now, Mapping):
         for key in sorted(before.keys() | now.keys()):
             inner = f"{name}.{key}" if name else key
-            yield from _differences(before.get(key), now.get(key), inner)
-    elif before != now:
+            yield from _differences(before.get(key, ABSENT), now.get(key, ABSENT), inner)
+    elif before != now and not (before in (ABSENT, None) and now in (ABSENT, None)):
         yield name, before, now
 
 

@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,9 @@ import anistar
 from anistar.cli import main
 from anistar.fields import Field
 from anistar.mesh import Mesh
+
+# One that exists; `solver` takes its place.
+COMMAND = f"{sys.executable} {{mesh}} {{solution}}"
 
 
 @pytest.fixture
@@ -46,7 +50,7 @@ def solver(monkeypatch, solve):
 
 def loop(*more):
     words = ["loop", "in.vtu", "--complexities", "60", "-o", "run"]
-    return main([*words, "--command", "solver {mesh} {solution}", *more])
+    return main([*words, "--command", COMMAND, *more])
 
 
 @pytest.mark.parametrize("kind", ["vtu", "msh", "su2"])
@@ -206,7 +210,7 @@ def test_the_input_is_not_removed(earlier, capsys):
     Path("link.vtu").symlink_to("run/series_001.vtu")
     for source in ("run/series_001.vtu", "link.vtu"):
         words = ["loop", source, "--complexities", "60", "-o", "run", "--force"]
-        assert main([*words, "--command", "solver {mesh} {solution}"]) == 2
+        assert main([*words, "--command", COMMAND]) == 2
         assert "cannot replace run/series_001.vtu, it is the input: copy" in capsys.readouterr().err
         assert contents() == earlier
 

@@ -20,6 +20,8 @@ from meshes import square, two_region_cube
 import anistar
 from anistar.cli import main
 
+# One that exists; `solve` takes its place.
+COMMAND = f"{sys.executable} {{mesh}} {{solution}}"
 TOUCHES = os.O_WRONLY | os.O_RDWR | os.O_CREAT
 
 
@@ -33,7 +35,7 @@ def solve(words, stdout, **_):
 
 def arguments(folder, kind, *more):
     words = ["in.vtu", "--complexities", "60,90", "--format", kind, "-o", folder]
-    return ["loop", *words, "--command", "solver {mesh} {solution}", "--json", *more]
+    return ["loop", *words, "--command", COMMAND, "--json", *more]
 
 
 def attempt(words, folder, last=None):

@@ -127,6 +127,47 @@ def test_resuming_an_empty_folder_begins(folder):
     assert len(contents("run")) == 3
 
 
+def test_resuming_replaces_no_files_of_somebody_else(folder, capsys):
+    Path("run").mkdir()
+    Path("run/step_000.mesh").write_text("mine")
+    assert main(arguments("run", "--resume")) == 2
+    said = capsys.readouterr().err
+    assert "run holds an earlier run (step_000.mesh): there is no report.json to resume" in said
+    assert [path.read_text() for path in Path("run").iterdir()] == ["mine"]
+
+
+def rewritten(report, change):
+    said = json.loads(report.read_text())
+    change(said)
+    report.write_text(json.dumps(said))
+
+
+def test_a_run_of_an_earlier_version_goes_on_where_what_is_new_is_off(folder, capsys):
+    def before_there_was_max_coarsening(said):
+        del said["settings"]["max_coarsening"]
+        for step in said["steps"]:
+            del step["settled"]
+
+    assert main(arguments("run", "--max-coarsening", "off")) == 0
+    before = contents("run")
+    rewritten(Path("run/report.json"), before_there_was_max_coarsening)
+    assert main(arguments("run", "--resume")) == 2
+    said = capsys.readouterr().err
+    assert "of another version of anistar: max_coarsening was no setting then and is 2.0" in said
+    assert main(arguments("run", "--resume", "--max-coarsening", "off")) == 0
+    assert contents("run") == before
+
+
+def test_no_run_is_replaced_for_a_solver_that_does_not_exist(folder, capsys):
+    assert main(arguments("run")) == 0
+    before = contents("run")
+    words = arguments("run", "--force")
+    words[words.index("--command") + 1] = "no-such-solver {mesh} {solution}"
+    assert main(words) == 1
+    assert "the solver 'no-such-solver': there is no such command" in capsys.readouterr().err
+    assert contents("run") == before
+
+
 @pytest.mark.parametrize("kind", ["vtu", "meshb", "msh", "su2"])
 def test_every_format_goes_to_the_solver_and_back(folder, kind):
     words = arguments("run", "--format", kind)
@@ -157,7 +198,8 @@ def test_a_damaged_report_is_named_and_can_be_replaced(tmp_path, content):
     with pytest.raises(FormatError, match=r"report\.json is no report of a loop"):
         RunFolder(tmp_path, {}).load()
     assert RunFolder(tmp_path, {}).begin(force=True) == 2
-    assert list(tmp_path.iterdir()) == []
+    assert [path.name for path in tmp_path.iterdir()] == ["report.json"]
+    assert RunFolder(tmp_path, {}).load() == []
 
 
 def test_finished_steps_of_a_python_loop_are_taken_up():

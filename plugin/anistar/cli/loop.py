@@ -85,6 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_targets(
         mesh, options.adapt.metric, options.sure_complexities(mesh.dim), options.adapt.remesh
     )
+    solve.require_command()
     with folder.locked():
         finished = folder.load() if arguments.resume else _begun(arguments, folder)
         solve.count = len(finished)
