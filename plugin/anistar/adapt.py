@@ -21,6 +21,7 @@ from .projection import Project
 from .remesh import Remeshed, remesh
 from .remesh_options import RemeshOptions
 from .report import attributes
+from .telling import telling_once
 from .transfer import TransferOptions, TransferReport, transfer
 
 Floats = NDArray[np.float64]
@@ -216,6 +217,7 @@ def metric_for(
     return Wanted(*from_fields(mesh, {name: checked[name] for name in names}, options.metric))
 
 
+@telling_once()
 def adapt_to(
     mesh: Mesh,
     fields: Mapping[str, Field | ArrayLike],
@@ -266,7 +268,9 @@ def _to_count(
         if best is None or miss < best[0]:
             best = miss, ledger, done
         corrected = _corrected(options.metric, wanted, ledger, done.mesh.n_cells)
-        if corrected is None or not done.report.converged:  # a budget stopped it: so would the next
+        is_over, _ = miss
+        # a budget that stopped it will stop the next, but the cap holds all the same
+        if corrected is None or not (done.report.converged or is_over):
             return ledger, done, corrections
         wanted, first = corrected, None
     assert best is not None  # the loop has run

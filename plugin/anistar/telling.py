@@ -14,8 +14,9 @@ _told: ContextVar[set[str] | None] = ContextVar("told", default=None)
 
 @contextmanager
 def telling_once() -> Iterator[None]:
-    """Let the passes of a loop tell what they have to say of a subject once."""
-    token = _told.set(set())
+    """Let the passes of a loop, and of those inside it, tell what they have to say once."""
+    outer = _told.get()
+    token = _told.set(outer if outer is not None else set())
     try:
         yield
     finally:

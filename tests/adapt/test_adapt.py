@@ -1,5 +1,6 @@
 import dataclasses
 import json
+import logging
 from importlib import import_module
 
 import numpy as np
@@ -270,6 +271,29 @@ def test_a_target_error_is_what_the_mesh_has():
         mesh = adapt(mesh, {"u": layer(mesh.points)}, asked).mesh
     assert validate(mesh) == []
     assert l2_error(mesh, layer(mesh.points), layer) == pytest.approx(error, rel=0.15)
+
+
+def test_a_mesh_that_was_stopped_above_its_cap_is_no_result(monkeypatch):
+    mesh = square(8)
+    found = remesh(mesh, np.tile(100 * np.eye(2), (mesh.n_points, 1, 1)))
+    assert found.mesh.n_cells > 100
+    limited = dataclasses.replace(found, report=dataclasses.replace(found.report, converged=False))
+    monkeypatch.setattr(import_module("anistar.adapt"), "remesh", lambda *_, **__: limited)
+    asked = AdaptOptions(metric=MetricOptions(target_complexity=1e4, max_elements=100))
+    with pytest.raises(MeshingError, match=f"{found.mesh.n_cells} elements exceed max_elements"):
+        adapt(mesh, {"u": layer(mesh.points)}, asked)
+
+
+def test_the_corrections_of_an_adaptation_say_what_they_have_to_say_once(caplog):
+    mesh = annulus(2)
+    asked = AdaptOptions(metric=MetricOptions(target_elements=60))
+    with caplog.at_level(logging.WARNING):
+        done = adapt(mesh, {"u": layer(mesh.points)}, asked)
+    assert validate(done.mesh) == []
+    assert done.report.corrections > 0
+    said = [record.getMessage().partition(":")[0] for record in caplog.records]
+    assert "area of tag 0 (ring)" in said
+    assert len(said) == len(set(said))
 
 
 def test_a_mesh_that_a_budget_stopped_is_not_made_again():
