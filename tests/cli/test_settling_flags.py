@@ -1,6 +1,7 @@
 """The flags of what makes loops settle."""
 
 import argparse
+import dataclasses
 import json
 
 import pytest
@@ -30,6 +31,13 @@ def test_only_what_is_given_leaves_its_default():
         "settled": Settled(points=0.1, error=0.2),
         "keep": KeepOptions(under=0.3),
     }
+
+
+def test_every_bound_of_what_is_kept_has_a_flag():
+    bounds = {"under": 0.1, "misplaced": 0.2, "over": 0.3, "longest": 5.0}
+    assert set(bounds) == {field.name for field in dataclasses.fields(KeepOptions)}
+    words = [f"--keep-{name}={value}" for name, value in bounds.items()]
+    assert parsed(*words) == {"keep": KeepOptions(**bounds)}
 
 
 @pytest.fixture

@@ -11,6 +11,14 @@ from .options import numbers
 
 OFF = "off"
 
+_KEPT = {
+    "under": "share of edges longer than sqrt(2)",
+    "misplaced": "share of edges shorter than 1/sqrt(2), where some are too long,",
+    "over": "share of points beyond what the metric needs",
+    "longest": "longest edge",
+}
+"""Bounds of `KeepOptions`."""
+
 
 def add_settling_options(parser: argparse.ArgumentParser, *, is_loop: bool) -> None:
     """Add the flags that loops have beyond one adaptation; a study has fewer."""
@@ -33,11 +41,7 @@ def add_settling_options(parser: argparse.ArgumentParser, *, is_loop: bool) -> N
     )
     if not is_loop:
         return
-    for name, text in (
-        ("under", "share of edges longer than sqrt(2)"),
-        ("over", "share of points beyond what the metric needs"),
-        ("longest", "longest edge"),
-    ):
+    for name, text in _KEPT.items():
         group.add_argument(
             f"--keep-{name}",
             type=float,
@@ -55,11 +59,7 @@ def settling_options(arguments: argparse.Namespace) -> dict[str, Any]:
         found["max_coarsening"] = given["hold"]
     if "settled" in given:
         found["settled"] = given["settled"]
-    bounds = {
-        name: given[f"keep_{name}"]
-        for name in ("under", "over", "longest")
-        if f"keep_{name}" in given
-    }
+    bounds = {name: given[f"keep_{name}"] for name in _KEPT if f"keep_{name}" in given}
     if bounds:
         found["keep"] = KeepOptions(**bounds)
     return found
