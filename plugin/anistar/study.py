@@ -181,29 +181,24 @@ def convergence_study(
         raise ValueError("give exactly one of error and exact")
     _check(complexities, repeats, baselines)
     measure = error if error is not None else _error_against(exact, field)  # type: ignore[arg-type]
-    options = options if options is not None else AdaptOptions()
-    shape = geometry if geometry is not None else mesh
-
-    def adapted(chosen: AdaptOptions) -> tuple[Step, ...]:
-        repeated = [value for value in complexities for _ in range(repeats)]
-        loop = LoopOptions(
-            adapt=chosen,
-            complexities=tuple(repeated),
-            max_iterations=len(repeated),
-            max_coarsening=max_coarsening,
-            settled=settled,
-        )
-        return _last_of_each(adapt_loop(solve, mesh, loop, geometry=geometry).steps, repeats)
-
-    steps = adapted(options)
+    repeated = tuple(value for value in complexities for _ in range(repeats))
+    loop = LoopOptions(
+        adapt=options if options is not None else AdaptOptions(),
+        complexities=repeated,
+        max_iterations=len(repeated),
+        max_coarsening=max_coarsening,
+        settled=settled,
+    )
+    steps = _last_of_each(adapt_loop(solve, mesh, loop, geometry=geometry).steps, repeats)
     others: dict[str, tuple[StudyRow, ...]] = {}
     for kind in baselines:
         if kind == "uniform":
+            shape = geometry if geometry is not None else mesh
             meshes = [_uniform(mesh, shape, value) for value in complexities]
             solved = [(one, dict(solve(one, {}))) for one in meshes]
         else:
-            round_cells = replace(options, metric=replace(options.metric, a_max=1.0))
-            solved = [(step.mesh, step.fields) for step in adapted(round_cells)]
+            made = adapt_loop(solve, mesh, _isotropic(loop), geometry=geometry).steps
+            solved = [(step.mesh, step.fields) for step in _last_of_each(made, repeats)]
         others[kind] = _rows(complexities, solved, measure)
     table = _rows(complexities, [(step.mesh, step.fields) for step in steps], measure)
     counts, errors = [row.points for row in table], [row.error for row in table]
@@ -245,6 +240,12 @@ def observed_order(points: Sequence[int], errors: Sequence[float], dim: int) -> 
     digits = -log(np.asarray(errors, dtype=np.float64))
     offsets = sizes - sizes.mean()
     return float((offsets * (digits - digits.mean())).sum() / np.square(offsets).sum())
+
+
+def _isotropic(loop: LoopOptions) -> LoopOptions:
+    """Return the options of a loop that adapts sizes, but no shapes."""
+    adapt = loop.adapt
+    return replace(loop, adapt=replace(adapt, metric=replace(adapt.metric, a_max=1.0)))
 
 
 def _uniform(mesh: Mesh, geometry: Mesh, complexity: float) -> Mesh:
