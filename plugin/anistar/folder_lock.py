@@ -136,15 +136,15 @@ def _opened(path: Path) -> tuple[TextIO, bool] | None:
 
 def _lock(stream: TextIO) -> bool | None:
     """Return whether the system locks an open file for us, None where it has no locks."""
-    if fcntl is None:
-        return None
-    try:
-        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # the file system has none
-        return None
-    return True
+    if fcntl is not None:
+        try:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return True
+        except BlockingIOError:
+            return False
+        except OSError:  # the file system has none
+            pass
+    return None
 
 
 def _signed(held: _Held) -> _Held:
