@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .algebra import eigenvalues, eigh
 from .kernels.spectra import compose
+from .mesh import MeshLike
 
 logger = logging.getLogger(__name__)
 
@@ -104,6 +105,12 @@ def check_metric(
         "%s was %s; its eigenvalues are lifted to at least %.1e", place, problem, floor[bad[0], 0]
     )
     return tensors
+
+
+def check_metric_on(mesh: MeshLike, M: ArrayLike) -> NDArray[np.float64]:
+    """Return what `check_metric` does of a metric at the points of a mesh."""
+    n, d = mesh.points.shape
+    return check_metric(M, n_points=n, dim=d)
 
 
 def check_repair(repair: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import check_metric, check_result
+from .checks import check_metric_on, check_result
 from .combination import check_step
 from .complexity import complexity
 from .implied import implied_metric
@@ -48,8 +48,7 @@ def limited_coarsening(mesh: MeshLike, M: Array, ratio: float = 2.0) -> Array:
         If `ratio` is out of range, or the mesh has no metric, see `implied_metric`.
     """
     check_step("ratio", ratio)
-    n, d = mesh.points.shape
-    metric = check_metric(M, n_points=n, dim=d)
+    metric = check_metric_on(mesh, M)
     return check_result(coarsening_limited(mesh, metric, ratio), "the limit of coarsening")
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .algebra import log_determinant
-from .checks import check_metric
+from .checks import check_metric_on
 from .kernels.elementary import exp
 from .mesh import MeshLike, cell_volumes
 
@@ -57,8 +57,7 @@ def complexity(mesh: MeshLike, M: Array) -> float:
     .. [1] Hermite-Genocchi formula; de Boor, Divided differences, Surveys in Approximation
        Theory 1, 2005.
     """
-    n, d = mesh.points.shape
-    M = check_metric(M, n_points=n, dim=d)
+    M = check_metric_on(mesh, M)
     return integral_of_exponential(mesh.cells, cell_volumes(mesh), 0.5 * log_determinant(M))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .algebra import congruent, eigenvalues, lower_factor
-from .checks import check_metric
+from .checks import check_metric_on
 from .graph import mesh_edges
 from .kernels.elementary import log
 from .mesh import MeshLike
@@ -47,8 +47,7 @@ def distortion(mesh: MeshLike, M: Array) -> Array:
     .. [1] Boissonnat, Wormser, Yvinec, Anisotropic Delaunay mesh generation, SIAM Journal on
        Computing 44, 2015, section 2.
     """
-    n, d = mesh.points.shape
-    M = check_metric(M, n_points=n, dim=d)
+    M = check_metric_on(mesh, M)
     p, q = mesh_edges(mesh).T
     ratio = eigenvalues(congruent(lower_factor(M[p]), M[q]))
     least, most = ratio[:, 0], ratio[:, -1]

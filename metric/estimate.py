@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .algebra import determinant
-from .checks import check_metric
+from .checks import check_metric_on
 from .complexity import REAL_ELEMENTS_PER_COMPLEXITY, complexity
 from .distortion import distortion, edge_lengths
 from .graph import mesh_edges
@@ -75,8 +75,7 @@ def estimate(mesh: MeshLike, M: Array) -> Estimate:
     MetricError
         If `M` is no metric on the points of `mesh`.
     """
-    n, d = mesh.points.shape
-    M = check_metric(M, n_points=n, dim=d)
+    M = check_metric_on(mesh, M)
     return estimate_with(mesh, M, distortion(mesh, M))
 
 

@@ -9,7 +9,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import check_metric, check_result
+from .checks import check_metric_on, check_result
 from .graph import VertexGraph
 from .growth import Growth
 from .kernels.elementary import log
@@ -128,8 +128,7 @@ def graded(
        the opposite vertices, and visited in rounds until the tolerance holds, the densest
        vertices first, so that the numbering of the points has no influence.
     """
-    n, d = mesh.points.shape
-    M = check_metric(M, n_points=n, dim=d)
+    M = check_metric_on(mesh, M)
     law = GrowthLaw(factor=factor, model=model, max_distortion=max_distortion)
     check_tolerance(tolerance)
     if law.is_off:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .algebra import congruent, eigh, lower_factor
-from .checks import check_metric, check_result
+from .checks import check_metric_on, check_result
 from .combination import check_step
 from .implied import implied_metric
 from .kernels.pieces import pieces
@@ -69,8 +69,7 @@ def limited_refinement(mesh: MeshLike, M: Array, ratio: float | str = "auto") ->
         If `ratio` is out of range.
     """
     check_refinement("ratio", ratio)
-    n, d = mesh.points.shape
-    metric = check_metric(M, n_points=n, dim=d)
+    metric = check_metric_on(mesh, M)
     return check_result(refinement_limited(mesh, metric, ratio).metric, "the limited refinement")
 
 
