@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import congruent, eigh, lower_factor
+from .algebra import congruent, eigenvalues, eigh, lower_factor
 from .checks import check_metric_on, check_result
 from .combination import check_step
 from .implied import implied_metric
@@ -25,6 +25,9 @@ of it, where those that were meant fall near its fine end: the pieces of an edge
 about the ratio of its ends. Where a mesh has as many points as the one to come, the ratio is
 below 20 even for steep fronts that it does not see; for a wall layer of 1e-4 on a mesh of 286
 points it is some hundred."""
+
+ROUND_OFF = 64 * float(np.finfo(np.float64).eps)
+"""Of eigenvalues, for each unit of the condition of what they belong to."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,14 +97,21 @@ def refinement_limited(mesh: MeshLike, M: Array, ratio: float | str) -> Refineme
         allowed, rows = np.full(n, float(ratio)), np.arange(n)
     if len(rows) == 0:
         return nowhere
-    L = lower_factor(implied_metric(mesh)[rows])
+    own = implied_metric(mesh)[rows]
+    L = lower_factor(own)
     values, vectors = eigh(congruent(L, M[rows]))
     held = np.minimum(values, np.square(allowed[rows])[:, None])
-    is_held = (held != values).any(axis=1)
+    is_held = held[:, -1] < values[:, -1]
     if not is_held.any():
         return nowhere
     found, limited = M.copy(), rows[is_held]
-    found[limited] = compose(held[is_held], product(L[is_held], vectors[is_held]))
+    values, held, vectors, L = values[is_held], held[is_held], vectors[is_held], L[is_held]
+    reduced = compose(held, product(L, vectors))
+    # of cells so flat that the smallest value is round-off all sizes are raised alike
+    alike = M[limited] * (held[:, -1] / values[:, -1])[:, None, None]
+    axes = eigenvalues(own[is_held])
+    is_told = values[:, 0] > ROUND_OFF * axes[:, -1] / axes[:, 0] * values[:, -1]
+    found[limited] = np.where(is_told[:, None, None], reduced, alike)
     nowhere.is_limited[limited] = True
-    excess = float(np.sqrt(values[is_held, -1] / held[is_held, -1]).max())
+    excess = float(np.sqrt(values[:, -1] / held[:, -1]).max())
     return Refinement(metric=found, is_limited=nowhere.is_limited, excess=excess)

@@ -7,7 +7,8 @@ import pytest
 from meshes import cube, square
 
 import anistar
-from anistar import RemeshOptions
+from anistar import Mesh, RemeshOptions
+from anistar.metric import limited_refinement
 
 
 def wall_layer(points):
@@ -112,3 +113,17 @@ def test_an_adaptation_has_the_option_too():
 def test_a_bad_limit_is_named(bad):
     with pytest.raises(ValueError, match=r"max_refinement must be (above 1|a number, None or)"):
         RemeshOptions(max_refinement=bad)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_cells_too_flat_to_tell_directions_still_have_a_metric_when_limited(seed):
+    # a millionth as thick as long, with metrics that are stretched along other axes
+    rng = np.random.default_rng(seed)
+    angle = np.pi * rng.random(25)
+    turn = np.stack([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    turn = np.moveaxis(turn, 2, 0)
+    mesh = Mesh(points=square(4).points * [1.0, 1e-6], cells=square(4).cells)
+    M = np.einsum("nij,j,nkj->nik", turn, [3e6, 1.2], turn)
+    limited = limited_refinement(mesh, M, 1.5)
+    assert (np.linalg.eigvalsh(limited) > 0).all()
+    assert (np.trace(limited, axis1=1, axis2=2) < np.trace(M, axis1=1, axis2=2)).any()
