@@ -294,10 +294,15 @@ def _far_off(it: SurfaceDeviation) -> str:
 
 def _changed(it: TagMeasure) -> str:
     what = {1: "length", 2: "area", 3: "volume"}[it.dim]
+    is_coarse = abs(it.change_from_smooth) > abs(it.change)
+    advice = (
+        "edges are long for what is curved: lower hausdorff_number"
+        if is_coarse
+        else 'without project, shape="polyhedron" keeps what is given'
+    )
     return (
         f"{what} of {_named(it.tag, it.name)}: {it.change:+.1%} against the given mesh, "
-        f"{it.change_from_smooth:+.1%} against the smooth shape through its points; without "
-        'project, shape="polyhedron" keeps what is given'
+        f"{it.change_from_smooth:+.1%} against the smooth shape through its points; {advice}"
     )
 
 

@@ -159,6 +159,14 @@ def test_a_change_of_more_than_one_percent_is_told_with_the_smooth_shape(caplog)
     assert told in caplog.messages
 
 
+@pytest.mark.parametrize(("h", "advice"), [(0.1, 'shape="polyhedron"'), (1.0, "hausdorff_number")])
+def test_the_advice_is_to_keep_what_is_given_or_to_follow_what_is_curved(h, advice):
+    fine, coarse = ball(2), ball(6)
+    report = remeshed(fine if h < 0.5 else coarse, h).report
+    (told,) = (text for text in report.warnings if text.startswith("volume of tag 0: "))
+    assert advice in told
+
+
 def test_a_loop_tells_of_each_subject_once(caplog):
     mesh = ball(2)
     with telling_once():
