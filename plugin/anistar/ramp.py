@@ -33,7 +33,7 @@ def approached(mesh: Mesh, metric: Floats, scale: float, ratio: float | str | No
     -------
     Refinement
         Of the same metric where there is no limit, or where cells are so flat that none can be
-        measured.
+        measured, which is said.
     """
     nothing = Refinement(metric=metric, is_limited=np.zeros(len(metric), dtype=bool), excess=1.0)
     if ratio is None:
@@ -41,7 +41,8 @@ def approached(mesh: Mesh, metric: Floats, scale: float, ratio: float | str | No
     try:
         scaled = Mesh._trusted(points=mesh.points * scale, cells=mesh.cells)
         found = refinement_limited(scaled, metric, ratio)
-    except MetricError:  # the cells, not the metric, which was checked
+    except MetricError as error:  # the cells, not the metric, which was checked
+        tell([f"max_refinement: the cells are too flat to tell what to limit: {error}"])
         return nothing
     if found.is_limited.any():
         tell([_said(found)])

@@ -61,7 +61,7 @@ class RemeshReport:
         through its points.
     deviations : tuple of SurfaceDeviation
         How far the new vertices of curves and curved surfaces lie from the given facets, for every
-        facet tag; empty where all are straight.
+        facet tag; empty where all are straight, and with `project`, whose shape is its own.
     warnings : tuple of str
         Where the shape of the new mesh may not be what is meant: a deviation that no smooth shape
         has, or a measure that changed by more than 1 %.

@@ -127,3 +127,11 @@ def test_cells_too_flat_to_tell_directions_still_have_a_metric_when_limited(seed
     limited = limited_refinement(mesh, M, 1.5)
     assert (np.linalg.eigvalsh(limited) > 0).all()
     assert (np.trace(limited, axis1=1, axis2=2) < np.trace(M, axis1=1, axis2=2)).any()
+
+
+def test_cells_too_flat_for_any_limit_are_told(caplog):
+    mesh = Mesh(points=square(2).points * [1.0, 1e-8], cells=square(2).cells)
+    M = np.tile(np.diag([1e6, 1e15]), (mesh.n_points, 1, 1))
+    done = anistar.remesh(mesh, M / 1e2, RemeshOptions(max_refinement=2.0, max_vertices=400))
+    assert done.report.limited["share"] == 0
+    assert any("max_refinement: the cells are too flat" in text for text in caplog.messages)
