@@ -1,4 +1,4 @@
-#include "plane/facet_shapes.h"
+#include "plane/geometry/facet_shapes.h"
 #include "bind.h"
 #include "geometry.h"
 #include "settings.h"

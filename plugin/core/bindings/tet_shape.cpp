@@ -1,6 +1,6 @@
 #include "bind.h"
 #include "geometry.h"
-#include "volume/densest_shapes.h"
+#include "volume/mesh/densest_shapes.h"
 
 namespace anistar::bindings {
 namespace {

@@ -1,12 +1,12 @@
 #include "plane/remesh.h"
 
 #include "base/stopwatch.h"
-#include "plane/bisection.h"
-#include "plane/consistency.h"
-#include "plane/outline.h"
-#include "plane/refine.h"
-#include "plane/shape.h"
-#include "plane/start.h"
+#include "plane/geometry/outline.h"
+#include "plane/mesh/start.h"
+#include "plane/passes/bisection.h"
+#include "plane/passes/refine.h"
+#include "plane/passes/shape.h"
+#include "plane/stars/consistency.h"
 #include "remesh/kept_quality.h"
 
 namespace anistar {

@@ -2,7 +2,7 @@
 // remesh: a mesh, a metric field, and a geometry in; a mesh with unit edges out.
 
 #include "metric/background.h"
-#include "plane/curves.h"
+#include "plane/geometry/curves.h"
 #include "remesh/remesh_result.h"
 #include "remesh/remesh_settings.h"
 

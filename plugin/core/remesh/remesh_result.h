@@ -2,8 +2,8 @@
 // What the remeshers of both dimensions return.
 
 #include "base/monitor.h"
-#include "certificate/consistency_rules.h"
 #include "mesh/statistics.h"
+#include "stars/consistency_rules.h"
 
 #include <map>
 #include <string>

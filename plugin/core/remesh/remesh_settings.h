@@ -1,7 +1,7 @@
 #pragma once
 // What the remeshers of both dimensions are told.
 
-#include "certificate/consistency_rules.h"
+#include "stars/consistency_rules.h"
 
 namespace anistar {
 

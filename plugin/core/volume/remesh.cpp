@@ -1,11 +1,11 @@
 #include "volume/remesh.h"
 
 #include "base/stopwatch.h"
-#include "certificate/star_failures.h"
-#include "volume/agreement.h"
-#include "volume/consistency.h"
-#include "volume/shaping.h"
-#include "volume/star_check.h"
+#include "stars/star_failures.h"
+#include "volume/passes/shaping.h"
+#include "volume/stars/agreement.h"
+#include "volume/stars/consistency.h"
+#include "volume/stars/star_check.h"
 
 #include <iomanip>
 #include <sstream>

@@ -3,8 +3,8 @@
 
 #include "remesh/remesh_result.h"
 #include "remesh/remesh_settings.h"
-#include "volume/passes.h"
-#include "volume/start.h"
+#include "volume/mesh/start.h"
+#include "volume/passes/passes.h"
 
 namespace anistar {
 

@@ -1,0 +1,207 @@
+#include "plane/mesh/edits.h"
+
+namespace anistar {
+namespace {
+
+/// A point nearer than this to an edge of its cell, relative to the cell's height over
+/// it, is inserted into both cells of the edge.
+constexpr double on_edge = 1e-6;
+/// A cavity may grow by this many cells to see a point of a curve.
+constexpr int max_growth = 8;
+
+/// Whether every vertex of the cavity is on a facet that the new star will have.
+bool keeps_vertices(const Triangulation<2> &mesh, const Cavity<2> &cavity) {
+  return std::all_of(cavity.cells().begin(), cavity.cells().end(), [&](Index c) {
+    return std::all_of(mesh.at(c).begin(), mesh.at(c).end(), [&](Index v) {
+      return std::any_of(cavity.facets().begin(), cavity.facets().end(),
+                         [&](HalfFacet h) {
+                           const auto [a, b] = mesh.facet(h);
+                           return a == v || b == v;
+                         });
+    });
+  });
+}
+
+/// Adds the cells behind facets that x does not see, but never across a constraint.
+bool grow_to_see(Triangulation<2> &mesh, Cavity<2> &cavity, Index apex,
+                 std::span<const HalfFacet> skipped, const Vector<2> &x) {
+  for (int growth = 0; growth <= max_growth; ++growth) {
+    cavity.bound(apex, skipped);
+    HalfFacet hidden;
+    for (HalfFacet h : cavity.facets()) {
+      Simplex<2> s = mesh.simplex(h.cell());
+      s[h.facet()] = x;
+      if (!has_volume<2>(s)) {
+        hidden = h;
+        break;
+      }
+    }
+    if (!hidden.exists())
+      return growth == 0 || keeps_vertices(mesh, cavity);
+    if (mesh.constraint(hidden) != none)
+      return false;
+    cavity.add(mesh.opposite(hidden).cell());
+  }
+  return false;
+}
+
+/// The two constrained edges of a curve vertex, in the direction of the curve.
+struct OnCurve {
+  HalfFacet into, out_of;
+};
+
+OnCurve curve_edges_at(const Workspace &w, Index v,
+                       const std::vector<HalfFacet> &star) {
+  OnCurve at;
+  for (HalfFacet h : star)
+    for (std::size_t k = 1; k < 3; ++k) {
+      const HalfFacet spoke(h.cell(), (h.facet() + k) % 3);
+      if (w.mesh.constraint(spoke) == none)
+        continue;
+      (w.curve_edge(spoke).v1 == v ? at.into : at.out_of) = spoke;
+    }
+  return at;
+}
+
+} // namespace
+
+Index insert_in_cell(Triangulation<2> &mesh, Cavity<2> &cavity, Index cell,
+                     const Vertex<2> &vertex, Index background_cell) {
+  const Simplex<2> s = mesh.simplex(cell);
+  const double area = cross(s[1] - s[0], s[2] - s[0]);
+  cavity.clear();
+  cavity.add(cell);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double part =
+        cross(s[(i + 2) % 3] - s[(i + 1) % 3], vertex.x - s[(i + 1) % 3]);
+    if (part > on_edge * area)
+      continue;
+    if (mesh.constraint(HalfFacet(cell, i)) != none)
+      return none;
+    cavity.add(mesh.opposite(HalfFacet(cell, i)).cell());
+  }
+  cavity.bound(none);
+  if (!cavity.is_star_shaped(vertex.x))
+    return none;
+  const Index v = mesh.add_vertex(vertex, Triangulation<2>::interior, background_cell,
+                                  cavity.slots());
+  cavity.fill(v);
+  return v;
+}
+
+Index split_edge(Workspace &w, HalfFacet edge) {
+  Triangulation<2> &mesh = w.mesh;
+  const auto [a, b] = mesh.facet(edge);
+  const HalfFacet other = mesh.opposite(edge);
+  const bool is_constrained = mesh.constraint(edge) != none;
+  CurveEdge whole{};
+  double t = 0;
+  Vector<2> x = .5 * (mesh.vertex(a).x + mesh.vertex(b).x);
+  if (is_constrained) {
+    whole = w.curve_edge(edge);
+    const Curve &curve = w.curve(whole);
+    if (curve.is_frozen || whole.ball != none)
+      return none;
+    t = middle(curve, whole.t0, whole.t1);
+    x = curve.at(t);
+  }
+  const HalfFacet boundary[1] = {edge};
+  const std::span<const HalfFacet> skipped(boundary, other.exists() ? 0 : 1);
+  w.cavity.clear();
+  w.cavity.add(edge.cell());
+  if (other.exists())
+    w.cavity.add(other.cell());
+  const Index record = mesh.constraint(edge);
+  if (is_constrained &&
+      !w.walls.is_clear(w.curve(whole), mesh.vertex(whole.v0).x, whole.v0,
+                        mesh.vertex(whole.v1).x, whole.v1, x, {&record, 1}))
+    return none;
+  if (!grow_to_see(mesh, w.cavity, none, skipped, x))
+    return none;
+  Index cell = mesh.background_cell[static_cast<std::size_t>(a)];
+  const Vertex<2> vertex = w.background.vertex(x, cell);
+  const Index feature = is_constrained ? 1 : Triangulation<2>::interior;
+  const Index v = mesh.add_vertex(vertex, feature, cell);
+  if (!is_constrained) {
+    w.cavity.fill(v);
+    return v;
+  }
+  auto &table = w.on_curves.curve_edges;
+  const auto first = static_cast<Index>(table.size());
+  table.push_back({whole.curve, whole.t0, t, whole.v0, v});
+  table.push_back({whole.curve, t, whole.t1, v, whole.v1});
+  w.walls.add(first, record);
+  w.walls.add(first + 1, record);
+  w.walls.remove(record);
+  const RidgeConstraint<2> ridges[2] = {{{whole.v0}, first}, {{whole.v1}, first + 1}};
+  w.cavity.fill(v, ridges);
+  return v;
+}
+
+bool bound_collapse(Workspace &w, Collapse &collapse) {
+  Triangulation<2> &mesh = w.mesh;
+  const Index v = collapse.vertex;
+  const Index dimension = mesh.feature[static_cast<std::size_t>(v)];
+  if (dimension == Triangulation<2>::corner)
+    return false;
+  collapse.skipped.clear();
+  collapse.ridges.clear();
+  star_of(mesh, v, collapse.star);
+  if (dimension == 1) {
+    const OnCurve at = curve_edges_at(w, v, collapse.star);
+    if (!at.into.exists() || !at.out_of.exists())
+      return false;
+    const CurveEdge in = w.curve_edge(at.into), out = w.curve_edge(at.out_of);
+    if (collapse.target != in.v0 && collapse.target != out.v1)
+      return false;
+    if (in.ball != none || out.ball != none)
+      return false;
+    if (in.v0 == out.v1 || w.curve(in).is_frozen ||
+        relative_sagitta(w.curve(in), in.t0, out.t1) > w.hausdorff)
+      return false;
+    collapse.halves = {mesh.constraint(at.into), mesh.constraint(at.out_of)};
+    if (!w.walls.is_clear(w.curve(in), mesh.vertex(in.v0).x, in.v0, mesh.vertex(v).x, v,
+                          mesh.vertex(out.v1).x, collapse.halves))
+      return false;
+    collapse.merged = {in.curve, in.t0, out.t1, in.v0, out.v1};
+    const Index far = collapse.target == in.v0 ? out.v1 : in.v0;
+    for (HalfFacet h : collapse.star) {
+      const auto [a, b] = mesh.facet(h);
+      if (mesh.constraint(h) != none && std::minmax(a, b) == std::minmax(in.v0, out.v1))
+        return false; // another curve runs there
+    }
+    collapse.ridges.push_back({{far}, none});
+    for (HalfFacet edge : {at.into, at.out_of})
+      if (!mesh.opposite(edge).exists())
+        collapse.skipped.push_back(edge);
+  }
+  w.cavity.clear();
+  for (HalfFacet h : collapse.star)
+    w.cavity.add(h.cell());
+  w.cavity.bound(collapse.target, collapse.skipped);
+  return !w.cavity.facets().empty() &&
+         w.cavity.is_star_shaped(mesh.vertex(collapse.target).x);
+}
+
+void fill_collapse(Workspace &w, Collapse &collapse) {
+  if (!collapse.ridges.empty()) {
+    collapse.ridges.front().constraint =
+        static_cast<Index>(w.on_curves.curve_edges.size());
+    w.on_curves.curve_edges.push_back(collapse.merged);
+    w.walls.add(collapse.ridges.front().constraint, collapse.halves[0]);
+    for (Index gone : collapse.halves)
+      w.walls.remove(gone);
+  }
+  w.cavity.fill(collapse.target, collapse.ridges);
+  w.mesh.vertex_cell[static_cast<std::size_t>(collapse.vertex)] = none;
+}
+
+void renumber(Workspace &w, int threads, double shift) {
+  const std::vector<Index> rank = sort_along_curve(w.mesh, threads, shift);
+  for (CurveEdge &edge : w.on_curves.curve_edges)
+    for (Index *v : {&edge.v0, &edge.v1})
+      if (*v != none) // an entry that a collapse left behind has lost its vertex
+        *v = rank[static_cast<std::size_t>(*v)];
+}
+
+} // namespace anistar

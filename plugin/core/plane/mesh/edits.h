@@ -1,0 +1,65 @@
+#pragma once
+// The edits of a mesh on its curves, each one cavity of the cavity operator.
+
+#include "metric/background.h"
+#include "plane/geometry/curves.h"
+#include "plane/mesh/cavity.h"
+#include "plane/mesh/start.h"
+#include "plane/mesh/walls.h"
+
+namespace anistar {
+
+/// Everything an edit needs.
+struct Workspace {
+  MeshOnCurves &on_curves;
+  const Geometry &geometry;
+  const Background<2> &background;
+  double hausdorff;
+  Triangulation<2> &mesh = on_curves.mesh;
+  Cavity<2> cavity{mesh};
+  Walls walls{mesh, on_curves.curve_edges, geometry};
+
+  [[nodiscard]] const CurveEdge &curve_edge(HalfFacet h) const {
+    return on_curves.curve_edges[static_cast<std::size_t>(mesh.constraint(h))];
+  }
+  [[nodiscard]] const Curve &curve(const CurveEdge &edge) const {
+    return geometry.curves[static_cast<std::size_t>(edge.curve)];
+  }
+  [[nodiscard]] double length(HalfFacet edge) const {
+    const auto [a, b] = mesh.facet(edge);
+    return edge_length(mesh.vertex(a), mesh.vertex(b));
+  }
+};
+
+/// Inserts an interior vertex into the cell that contains it. @returns the vertex, none
+/// when it lies too near to an edge. The new cells are cavity.star().
+[[nodiscard]] Index insert_in_cell(Triangulation<2> &mesh, Cavity<2> &cavity,
+                                   Index cell, const Vertex<2> &vertex,
+                                   Index background_cell);
+
+/// Splits an edge in its middle: on the curve if it is constrained. @returns the new
+/// vertex, none when the edge is frozen or protected, or the curve cannot be followed
+/// validly.
+[[nodiscard]] Index split_edge(Workspace &w, HalfFacet edge);
+
+/// The removal of a vertex into its neighbour, and what that means for its curve.
+struct Collapse {
+  Index vertex, target;
+  std::vector<HalfFacet> star;            ///< scratch
+  std::vector<HalfFacet> skipped;         ///< boundary edges that vanish
+  std::vector<RidgeConstraint<2>> ridges; ///< the merged curve edge
+  CurveEdge merged{};                     ///< valid when ridges is not empty
+  std::array<Index, 2> halves{};          ///< the curve edges that merge
+};
+
+/// Bounds w.cavity for collapse.vertex and collapse.target, and fills in the rest.
+/// @returns false when that is not valid: the vertex is a corner or leaves its curve, a
+/// cell would be inverted, or the boundary would run into another part of it.
+[[nodiscard]] bool bound_collapse(Workspace &w, Collapse &collapse);
+/// Carries the collapse out. @pre bound_collapse was true and nothing changed since.
+void fill_collapse(Workspace &w, Collapse &collapse);
+
+/// Sorts the mesh along a Hilbert curve and tells the curve edges.
+void renumber(Workspace &w, int threads, double shift = 0);
+
+} // namespace anistar

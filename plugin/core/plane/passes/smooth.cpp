@@ -1,0 +1,127 @@
+#include "mesh/blocks.h"
+#include "plane/mesh/moves.h"
+#include "plane/passes/shape.h"
+
+#include <cmath>
+#include <memory>
+
+namespace anistar {
+namespace {
+
+/// Longest move in the vertex's own metric.
+constexpr double longest_move = .3;
+constexpr int max_halvings = 4;
+constexpr int flip_cap = 40;
+
+class Smoother {
+public:
+  Smoother(Workspace &w, Legaliser &legaliser, Target target)
+      : w_(w), legaliser_(legaliser), target_(target) {}
+
+  /// @returns false, without a change, when the star of v leaves the range.
+  bool visit(Index v, const VertexRange &range) {
+    Triangulation<2> &mesh = w_.mesh;
+    const Index feature = mesh.feature[static_cast<std::size_t>(v)];
+    if (feature == Triangulation<2>::corner)
+      return true;
+    if (feature == 1 && !range.is_unbounded())
+      return false; // it might run into another part of the boundary
+    star_of(mesh, v, star_);
+    for (HalfFacet h : star_)
+      if (!range.contains(mesh.at(h.cell())))
+        return false;
+    const Vertex<2> &vertex = mesh.vertex(v);
+    Vector<2> step = Vector<2>::Zero();
+    if (feature != 1)
+      step = target_ == Target::odt ? odt_displacement(mesh, vertex, star_)
+                                    : pliant_displacement(mesh, vertex, star_);
+    const double length = std::sqrt(quadratic<2>(vertex.M, step));
+    if (length > longest_move)
+      step *= longest_move / length;
+    const bool moved = feature == 1 ? slide(v) : move(v, step);
+    if (moved && (range.is_unbounded() || target_ == Target::odt))
+      legaliser_.push_star(v);
+    else
+      legaliser_.push_finished(v, star_);
+    legaliser_.run(flip_cap);
+    return true;
+  }
+
+private:
+  Workspace &w_;
+  Legaliser &legaliser_;
+  Target target_;
+  std::vector<HalfFacet> star_;
+
+  bool move(Index v, Vector<2> step) {
+    const Vector<2> from = w_.mesh.vertex(v).x;
+    for (int halving = 0; halving < max_halvings; ++halving, step *= .5)
+      if (may_move(w_.mesh, from, from + step, star_)) {
+        place(v, from + step);
+        return true;
+      }
+    return false;
+  }
+
+  void place(Index v, const Vector<2> &x) {
+    Index &cell = w_.mesh.background_cell[static_cast<std::size_t>(v)];
+    w_.mesh.vertex(v) = w_.background.vertex(x, cell);
+  }
+
+  /// Moves v along its curve to equal lengths on both sides, were the metric constant.
+  /// Only edges of the curve pull: the others would drive it off its spacing.
+  bool slide(Index v) {
+    const SlidingVertex on(w_, star_, v);
+    if (!on.can_slide())
+      return false;
+    const Vertex<2> here = w_.mesh.vertex(v);
+    const double before = edge_length(w_.mesh.vertex(on.in().v0), here);
+    const double after = edge_length(here, w_.mesh.vertex(on.out().v1));
+    const double shift = .5 * (after - before);
+    double dt =
+        shift > 0 ? shift / after * on.room_after() : shift / before * on.room_before();
+    dt = std::clamp(dt, -.4 * on.room_before(), .4 * on.room_after());
+    for (int halving = 0; halving < max_halvings && dt != 0; ++halving, dt *= .5)
+      if (on.may_slide(dt) && may_move(w_.mesh, here.x, on.at(dt), star_)) {
+        place(v, on.at(dt));
+        on.commit(dt);
+        return true;
+      }
+    return false;
+  }
+};
+
+/// A smoother of its own for each thread.
+class BlockSmoother {
+public:
+  BlockSmoother(Workspace &w, Legaliser &legaliser, Target target)
+      : total_(legaliser), own_(std::make_unique<Legaliser>(w.mesh)),
+        smoother_(w, *own_, target) {}
+
+  bool visit(Index v, const VertexRange &range) {
+    own_->restrict_to(range);
+    return smoother_.visit(v, range);
+  }
+  void leave(std::size_t) { total_.take_counts(*own_); }
+
+private:
+  Legaliser &total_;
+  std::unique_ptr<Legaliser> own_;
+  Smoother smoother_;
+};
+
+} // namespace
+
+void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
+            int threads) {
+  std::vector<Index> vertices;
+  for (std::size_t v = 0; v < w.mesh.vertices.size(); ++v)
+    if (w.mesh.is_used(static_cast<Index>(v)))
+      vertices.push_back(static_cast<Index>(v));
+  Smoother last(w, legaliser, target);
+  visit_in_blocks(
+      Blocks(w.mesh.vertices.size()), vertices, threads, monitor, 0,
+      [&] { return BlockSmoother(w, legaliser, target); }, last);
+}
+
+} // namespace anistar

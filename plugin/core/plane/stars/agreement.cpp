@@ -1,0 +1,224 @@
+#include "plane/stars/agreement.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace anistar {
+namespace {
+
+/// The walk on the plateau: only while this fraction of the edges disagrees, because it
+/// would ruin the mesh on hopeless metrics, or this number, for small meshes.
+constexpr double plateau_fraction = .002;
+constexpr int always_few = 10;
+constexpr int max_plateau_rounds = 60;
+constexpr int max_polish_sweeps = 4;
+
+/// Vertices to visit, each once, in the order in which they came.
+class Worklist {
+public:
+  explicit Worklist(std::size_t n_vertices) : is_in_(n_vertices, false) {}
+
+  void add(Index v) {
+    if (!is_in_[static_cast<std::size_t>(v)]) {
+      is_in_[static_cast<std::size_t>(v)] = true;
+      items_.push_back(v);
+    }
+  }
+  [[nodiscard]] std::vector<Index> take() {
+    for (Index v : items_)
+      is_in_[static_cast<std::size_t>(v)] = false;
+    return std::exchange(items_, {});
+  }
+  [[nodiscard]] std::size_t size() const { return items_.size(); }
+
+private:
+  std::vector<Index> items_;
+  std::vector<bool> is_in_;
+};
+
+/// A relocator of its own for each thread; what it lists is kept by block.
+template <class Move> class BlockRelocator {
+public:
+  BlockRelocator(Workspace &w, Legaliser &legaliser, std::uint64_t seed, Move move,
+                 AgreementCounts &counts, std::vector<std::vector<Index>> &listed)
+      : total_(legaliser), counts_(counts), listed_(listed),
+        own_(std::make_unique<Legaliser>(w.mesh)), relocator_(w, *own_, seed),
+        move_(move) {}
+
+  bool visit(Index v, const VertexRange &range) { return move_(relocator_, v, range); }
+  void leave(std::size_t block) {
+    total_.take_counts(*own_);
+    counts_ += relocator_.take_counts();
+    listed_[block] = relocator_.take_listed();
+  }
+
+private:
+  Legaliser &total_;
+  AgreementCounts &counts_;
+  std::vector<std::vector<Index>> &listed_;
+  std::unique_ptr<Legaliser> own_;
+  Relocator relocator_;
+  Move move_;
+};
+
+class Agreement {
+public:
+  Agreement(Workspace &w, Legaliser &legaliser, Monitor &monitor, std::uint64_t seed,
+            int threads)
+      : w_(w), mesh_(w.mesh), legaliser_(legaliser), monitor_(monitor), seed_(seed),
+        threads_(threads), blocks_(mesh_.vertices.size()),
+        relocator_(w, legaliser, seed), work_(mesh_.vertices.size()) {}
+
+  AgreementCounts run() {
+    scan();
+    bool going = true;
+    for (int pass = 0; going && pass < max_agreement_passes && work_.size() > 0; ++pass)
+      going = visit(work_.take(), double(pass) / max_agreement_passes,
+                    [pass](Relocator &relocator, Index v, const VertexRange &range) {
+                      return relocator.relocate(v, pass, range);
+                    });
+    if (going && walk_on_plateau())
+      polish();
+    count_left();
+    return counts_;
+  }
+
+private:
+  Workspace &w_;
+  Triangulation<2> &mesh_;
+  Legaliser &legaliser_;
+  Monitor &monitor_;
+  std::uint64_t seed_;
+  int threads_;
+  Blocks blocks_;
+  AgreementCounts counts_;
+  Relocator relocator_; ///< for what concerns more than one block
+  Worklist work_;
+
+  /// Moves vertices in blocks and adds to the worklist what they list.
+  template <class Move>
+  bool visit(const std::vector<Index> &vertices, double fraction, Move move) {
+    std::vector<std::vector<Index>> listed(blocks_.size() + 1);
+    struct Last {
+      Relocator &relocator;
+      Move move;
+      bool visit(Index v, const VertexRange &range) {
+        return move(relocator, v, range);
+      }
+    } last{relocator_, move};
+    const bool going = visit_in_blocks(
+        blocks_, vertices, threads_, monitor_, fraction,
+        [&] { return BlockRelocator(w_, legaliser_, seed_, move, counts_, listed); },
+        last);
+    counts_ += relocator_.take_counts();
+    listed.back() = relocator_.take_listed();
+    for (const std::vector<Index> &of_block : listed)
+      for (Index v : of_block)
+        work_.add(v);
+    if (!going) // some of them were not visited
+      for (Index v : vertices)
+        work_.add(v);
+    return going;
+  }
+
+  /// The one search for disagreeing edges.
+  void scan() {
+    const auto edges = parallel_search<HalfFacet>(
+        mesh_.cells.size(), threads_, [&](std::size_t c, const auto &add) {
+          for (std::size_t i = 0; i < 3; ++i) {
+            const HalfFacet edge(static_cast<Index>(c), i),
+                other = mesh_.opposite(edge);
+            if (mesh_.is_alive(edge.cell()) && other.exists() &&
+                other.cell() > edge.cell() && disagrees(mesh_, edge))
+              add(edge);
+          }
+        });
+    counts_.edges_before = edges.size();
+    for (HalfFacet edge : edges)
+      for_quad(mesh_, edge, [&](Index v) { work_.add(v); });
+  }
+
+  /// Random moves that do not raise the count, to leave local minima.
+  bool walk_on_plateau() {
+    // four vertices are listed for an edge
+    const double few =
+        4 * std::max(static_cast<double>(always_few),
+                     plateau_fraction * 1.5 * static_cast<double>(mesh_.n_cells()));
+    bool going = true;
+    for (int round = 0; going && round < max_plateau_rounds; ++round) {
+      if (work_.size() == 0 || static_cast<double>(work_.size()) > few)
+        break;
+      std::vector<Index> vertices = work_.take();
+      if (round % 3 == 2)
+        vertices = with_rings(vertices);
+      going = visit(vertices, double(round) / max_plateau_rounds,
+                    [round](Relocator &relocator, Index v, const VertexRange &range) {
+                      return relocator.wander(v, round, range);
+                    });
+    }
+    return going;
+  }
+
+  [[nodiscard]] std::vector<Index> with_rings(const std::vector<Index> &vertices) {
+    Worklist once(mesh_.vertices.size());
+    std::vector<HalfFacet> star;
+    for (Index v : vertices) {
+      once.add(v);
+      star_of(mesh_, v, star);
+      for (HalfFacet h : star)
+        for (Index u : mesh_.facet(h))
+          once.add(u);
+    }
+    return once.take();
+  }
+
+  /// Takes back what agreement cost in lengths.
+  void polish() {
+    std::vector<Index> free;
+    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v)
+      if (mesh_.feature[v] == Triangulation<2>::interior &&
+          mesh_.is_used(static_cast<Index>(v)))
+        free.push_back(static_cast<Index>(v));
+    for (int sweep = 0; sweep < max_polish_sweeps; ++sweep) {
+      const std::size_t before = counts_.moves;
+      const bool going = visit(
+          free, 1, [sweep](Relocator &relocator, Index v, const VertexRange &range) {
+            return relocator.polish(v, sweep, range);
+          });
+      if (!going || counts_.moves == before)
+        return;
+    }
+  }
+
+  /// The disagreeing edges at the vertices that are still listed, each once.
+  void count_left() {
+    std::vector<std::pair<Index, std::size_t>> left;
+    std::vector<HalfFacet> star;
+    const auto count = [&](HalfFacet e) {
+      if (!disagrees(mesh_, e))
+        return;
+      const HalfFacet other = mesh_.opposite(e);
+      const HalfFacet first = other.cell() < e.cell() ? other : e;
+      left.emplace_back(first.cell(), first.facet());
+    };
+    for (Index v : work_.take()) {
+      star_of(mesh_, v, star);
+      for (HalfFacet h : star) {
+        count(h);
+        count(HalfFacet(h.cell(), (h.facet() + 2) % 3));
+      }
+    }
+    std::sort(left.begin(), left.end());
+    counts_.edges_after =
+        static_cast<std::size_t>(std::unique(left.begin(), left.end()) - left.begin());
+  }
+};
+
+} // namespace
+
+AgreementCounts agree(Workspace &w, Legaliser &legaliser, Monitor &monitor,
+                      std::uint64_t seed, int threads) {
+  return Agreement(w, legaliser, monitor, seed, threads).run();
+}
+
+} // namespace anistar

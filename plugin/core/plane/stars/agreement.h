@@ -1,0 +1,16 @@
+#pragma once
+// Phase 4: vertices are moved until the metrics of neighbours agree about every edge.
+
+#include "base/monitor.h"
+#include "plane/stars/relocator.h"
+
+namespace anistar {
+
+/// Relocates vertices at disagreeing edges, by exact scoring of the change in their
+/// number, then walks on the plateau while few are left. The set of vertices to visit
+/// is maintained, never searched for again. Vertices are moved in blocks, see
+/// mesh/blocks.h.
+AgreementCounts agree(Workspace &w, Legaliser &legaliser, Monitor &monitor,
+                      std::uint64_t seed, int threads);
+
+} // namespace anistar

@@ -1,0 +1,171 @@
+#pragma once
+// Failures of the certificate that no test on one facet can see, and the loop that
+// mends them by moving vertices; for meshes of triangles and of tetrahedra.
+
+#include "base/monitor.h"
+#include "stars/consistency_rules.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace anistar {
+
+/// What is looked at to mend a failing cell. The topology of the mesh stays.
+template <std::size_t d> class StarFailures {
+public:
+  explicit StarFailures(const Triangulation<d> &mesh)
+      : mesh_(mesh),
+        test_({mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints}),
+        seen_(mesh.cells.size(), 0) {}
+
+  /// As the certificate sees one cell now.
+  [[nodiscard]] DelaunayTest<d> &test() { return test_; }
+
+  /// Vertices whose move could mend a cell: those found inside of its balls, its own,
+  /// and those across its facets. Empty when it does not fail.
+  [[nodiscard]] std::vector<Index> culprits(Index cell) {
+    std::vector<Index> found;
+    const auto add = [&](Index v) {
+      if (std::find(found.begin(), found.end(), v) == found.end())
+        found.push_back(v);
+    };
+    for (Index v : mesh_.at(cell))
+      if (const Index inside = test_.violator(cell, mesh_.vertex(v).M); inside != none)
+        add(inside);
+    if (found.empty())
+      return found;
+    for (Index v : mesh_.at(cell))
+      add(v);
+    for (std::size_t i = 0; i <= d; ++i)
+      if (const HalfFacet beyond = mesh_.opposite(HalfFacet(cell, i)); beyond.exists())
+        add(mesh_.apex(beyond));
+    return found;
+  }
+
+  /// Takes up the answers for the mesh as it is.
+  void know(const std::vector<std::uint8_t> &bits) { known_ = bits; }
+
+  /// Takes up the cells whose answer a move of one vertex can change: its star and
+  /// three layers around it, but for accidents that the next round finds.
+  void surround(std::span<const Index> star) {
+    ++epoch_;
+    n_star_ = star.size();
+    cells_.assign(star.begin(), star.end());
+    for (Index c : cells_)
+      seen_[static_cast<std::size_t>(c)] = epoch_;
+    std::size_t begin = 0;
+    for (int layer = 0; layer < 3; ++layer)
+      for (const std::size_t end = cells_.size(); begin < end; ++begin)
+        for (std::size_t i = 0; i <= d; ++i) {
+          const HalfFacet beyond = mesh_.opposite(HalfFacet(cells_[begin], i));
+          if (beyond.exists() &&
+              std::exchange(seen_[static_cast<std::size_t>(beyond.cell())], epoch_) !=
+                  epoch_)
+            cells_.push_back(beyond.cell());
+        }
+  }
+
+  /// In how many stars these cells are missing.
+  [[nodiscard]] int count() {
+    int n = 0;
+    for (Index c : cells_)
+      n += missing(known(c));
+    return n;
+  }
+  /// The same while v, whose star they surround, is elsewhere; not counted further than
+  /// to `enough`. A cell away from v that is Delaunay stays so unless v is in a ball of
+  /// it: there is no other new place.
+  [[nodiscard]] int count_moved(Index v, int enough) {
+    int n = 0;
+    for (std::size_t k = 0; k < cells_.size() && n < enough; ++k)
+      if (k < n_star_ || known(cells_[k]) != all_vertices<d> || may_hold(cells_[k], v))
+        n += missing(test_.bits(cells_[k]));
+    return n;
+  }
+  /// The vertex has moved.
+  void forget() {
+    for (Index c : cells_)
+      known_[static_cast<std::size_t>(c)] = unknown;
+  }
+
+private:
+  const Triangulation<d> &mesh_;
+  DelaunayTest<d> test_;
+  std::vector<std::uint8_t> known_; ///< per cell, the answer before the trial
+  std::vector<std::uint32_t> seen_; ///< per cell
+  std::uint32_t epoch_ = 0;
+  std::vector<Index> cells_;
+  std::size_t n_star_ = 0;
+
+  static constexpr std::uint8_t unknown = 255;
+
+  [[nodiscard]] std::uint8_t known(Index c) {
+    std::uint8_t &bits = known_[static_cast<std::size_t>(c)];
+    if (bits == unknown)
+      bits = test_.bits(c);
+    return bits;
+  }
+  [[nodiscard]] static int missing(std::uint8_t bits) {
+    return int(d + 1) - std::popcount(static_cast<unsigned>(bits));
+  }
+  /// Whether one of the balls of a cell may have a vertex inside.
+  [[nodiscard]] bool may_hold(Index c, Index v) const {
+    const Simplex<d> s = mesh_.simplex(c);
+    return std::any_of(mesh_.at(c).begin(), mesh_.at(c).end(), [&](Index of) {
+      return !Circumball<d>(mesh_.vertex(of).M, s)
+                  .power(mesh_.vertex(v).x)
+                  .is_positive();
+    });
+  }
+};
+
+template <std::size_t d>
+[[nodiscard]] std::vector<Index> failing_cells(const Triangulation<d> &mesh,
+                                               const std::vector<std::uint8_t> &bits) {
+  std::vector<Index> cells;
+  for (std::size_t c = 0; c < bits.size(); ++c)
+    if (mesh.is_alive(static_cast<Index>(c)) && bits[c] != all_vertices<d>)
+      cells.push_back(static_cast<Index>(c));
+  return cells;
+}
+
+/// More failures than this part of the cells are no accidents of an agreeing mesh.
+inline constexpr double accidental = .005;
+
+/// Mends the failing cells one by one, round by round; hopeless when there are many.
+/// @param mender mend(cell, round) moves a vertex and tells whether it did,
+/// take_changed() are the cells that have changed since the last call, failures() is
+/// the StarFailures<d> of the mesh
+/// @returns the number of moves; `known` is true of the mesh again
+template <std::size_t d, class Mender>
+std::size_t mend_failures(const Triangulation<d> &mesh, Mender &mender,
+                          Monitor &monitor, DelaunayBits &known) {
+  constexpr int max_rounds = 8;
+  std::size_t moves = 0;
+  std::vector<Index> failing = failing_cells(mesh, known.bits);
+  if (static_cast<double>(failing.size()) >
+      accidental * static_cast<double>(mesh.n_cells()))
+    return moves;
+  for (int round = 0; round < max_rounds && !failing.empty() &&
+                      monitor.look(double(round) / max_rounds);
+       ++round) {
+    std::size_t moved = 0;
+    mender.failures().know(known.bits);
+    for (Index c : failing)
+      if (monitor.look(double(round) / max_rounds))
+        moved += mender.mend(c, round);
+    if (moved == 0)
+      break;
+    moves += moved;
+    for (Index c :
+         dependent_cells<d>(mesh.neighbours, mender.take_changed(), known.reach)) {
+      known.bits[static_cast<std::size_t>(c)] = mender.failures().test().bits(c);
+      known.reach[static_cast<std::size_t>(c)] = mender.failures().test().reach();
+    }
+    failing = failing_cells(mesh, known.bits);
+  }
+  return moves;
+}
+
+} // namespace anistar

@@ -1,0 +1,30 @@
+#pragma once
+// Phases 2 and 3 of remeshing in 3D: the mesh is brought to its size and its shape.
+
+#include "base/stopwatch.h"
+#include "volume/passes/passes.h"
+
+#include <functional>
+#include <memory>
+
+namespace anistar {
+
+struct Shaping {
+  std::unique_ptr<Volume> volume;
+  VolumeCounts counts;
+  bool is_full = false; ///< a split had to be left out for want of vertices
+  double kept = 0;      ///< what its quality should not be below (see kept_quality.h)
+  double least = 0;     ///< of its qualities, in the mean of the metrics
+};
+
+/// Splits and collapses until the edges have unit length, and improves the cells.
+///
+/// No step of phase 3 lowers the least quality below what is kept. Where that is not
+/// enough another mesh is made which keeps it all the time, and the better one is
+/// returned.
+/// @param start makes the mesh that it begins with
+[[nodiscard]] Shaping shape_volume(const std::function<Volume()> &start,
+                                   Monitor &monitor, const HausdorffNumbers &hausdorff,
+                                   std::uint64_t seed, int threads, Stopwatch &watch);
+
+} // namespace anistar

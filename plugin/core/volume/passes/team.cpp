@@ -1,0 +1,50 @@
+#include "volume/passes/team.h"
+
+namespace anistar {
+
+std::vector<std::vector<Index>>
+deal_free_cells(Volume &volume, const std::vector<std::vector<Index>> &items) {
+  // re-insertions and swaps make one more cell now and then; what finds no room is put
+  // off
+  const auto share = [](std::size_t n) { return n / 8 + 64; };
+  std::size_t needed = 0;
+  for (const std::vector<Index> &of_slab : items)
+    needed += share(of_slab.size());
+  std::vector<Index> free = std::exchange(volume.mesh.free_cells, {});
+  while (free.size() < needed) {
+    free.push_back(volume.add_cell());
+    volume.mesh.at(free.back())[0] = none;
+  }
+  std::vector<std::vector<Index>> dealt;
+  for (const std::vector<Index> &of_slab : items) {
+    const auto first = free.end() - static_cast<std::ptrdiff_t>(share(of_slab.size()));
+    dealt.emplace_back(first, free.end());
+    free.erase(first, free.end());
+  }
+  volume.mesh.free_cells = std::move(free);
+  return dealt;
+}
+
+/// The cells across the boundary of the cavity will have new neighbours.
+bool CavityOperator::stays_in_slab(std::span<const Index> cells) const {
+  std::size_t n_new = 0;
+  for (const Outer &outer : outers_) {
+    n_new += outer.kind == Kind::base;
+    if (outer.beyond.exists() && !volume_.is_inside(volume_.mesh.apex(outer.beyond)))
+      return false;
+  }
+  return n_new <= cells.size() + volume_.free_cells.size();
+}
+
+VolumeCounts &VolumeCounts::operator+=(const VolumeCounts &other) {
+  splits += other.splits;
+  collapses += other.collapses;
+  edge_swaps += other.edge_swaps;
+  face_swaps += other.face_swaps;
+  moves += other.moves;
+  insertions += other.insertions;
+  repairs += other.repairs;
+  return *this;
+}
+
+} // namespace anistar

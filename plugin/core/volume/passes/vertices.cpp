@@ -1,0 +1,287 @@
+#include "volume/passes/passes.h"
+
+#include "base/random.h"
+#include "volume/passes/team.h"
+
+namespace anistar {
+namespace {
+
+/// Below this a star is stuck: a collapse may keep an edge of it that is too long.
+constexpr double stuck_quality = .1;
+/// Steps shorter than this, in the metric, are not worth a trial in a good star.
+constexpr double smallest_step = .02;
+/// Moves may not take the worst cell below this, or below where it is.
+constexpr double move_floor = .35;
+/// Random trials for stars below this quality, within this radius.
+constexpr double random_below = .4, random_radius = .2;
+/// Height of the regular tetrahedron of unit edges.
+constexpr double unit_height = .816496580927726;
+/// An edge whose square in the metric of one end exceeds this times the bound is not
+/// below the bound in the mean, whatever the other end says within reason.
+constexpr double clearly_longer = 4;
+/// Edges that a re-insertion may make.
+constexpr double longest_reinserted = 1.6;
+
+} // namespace
+
+double VolumePasses::star_quality() const {
+  double worst = 1;
+  for (Index c : star_)
+    worst = std::min(worst, volume_.quality_of(c));
+  return worst;
+}
+
+/// Marks the vertices that v, on a surface, may move to: those joined to it by an edge
+/// of the surface.
+void VolumePasses::note_surface_neighbours(Index v) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  ring_.clear();
+  for (Index c : star_) {
+    if (!volume_.is_walled(c))
+      continue;
+    const std::size_t at = mesh.local_index(c, v);
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (i == at || mesh.constraint(HalfFacet(c, i)) == none)
+        continue;
+      for (std::size_t j = 0; j < 4; ++j)
+        if (j != i && j != at)
+          ring_.push_back(mesh.at(c)[j]);
+    }
+  }
+}
+
+bool VolumePasses::may_collapse(Index v, Index u) const {
+  switch (volume_.feature(v)) {
+  case 3:
+    return true;
+  case 2:
+    return std::find(ring_.begin(), ring_.end(), u) != ring_.end();
+  case 1: {
+    const Index edge = volume_.ridges.find(v, u);
+    if (edge == none)
+      return false;
+    Index beyond = none;
+    volume_.ridges.around(v, [&](Index, Index other) {
+      if (other != u)
+        beyond = other;
+    });
+    return beyond != none && volume_.ridges.find(u, beyond) == none;
+  }
+  default:
+    return false;
+  }
+}
+
+/// Whether the ridge stays near its curve when v goes to its neighbour u.
+bool VolumePasses::follows_curve(Index v, Index u) const {
+  Index beyond = none;
+  volume_.ridges.around(v, [&](Index, Index other) {
+    if (other != u)
+      beyond = other;
+  });
+  return !is_off_curve(volume_.support_of(v), volume_.mesh.vertex(u),
+                       volume_.mesh.vertex(beyond));
+}
+
+/// @pre star_ is the star of v.
+bool VolumePasses::collapse(Index v, Index u, const Acceptance &acceptance) {
+  if (volume_.feature(v) == 1 && !follows_curve(v, u))
+    return false;
+  if (!operator_.replace(star_, u, {v, none}, acceptance))
+    return false;
+  if (volume_.feature(v) == 1)
+    volume_.ridges.contract(v, u);
+  volume_.remove_vertex(v);
+  return true;
+}
+
+bool VolumePasses::collapse_shortest(Index v, const VertexRule &rule) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  if (volume_.feature(v) == 2)
+    note_surface_neighbours(v);
+  const Vertex<3> &here = mesh.vertex(v);
+  Index best = none;
+  double shortest = rule.shortest;
+  volume_.open_vertices();
+  volume_.mark_vertex(v);
+  for (Index c : star_)
+    for (Index u : mesh.at(c)) {
+      if (!volume_.mark_vertex(u))
+        continue;
+      const Vertex<3> &there = mesh.vertex(u);
+      const Vector<3> e = there.x - here.x;
+      const double square = quadratic<3>(here.M, e);
+      // a mean is not below both
+      if (square > clearly_longer * shortest ||
+          std::min(square, quadratic<3>(there.M, e)) >= shortest * shortest)
+        continue;
+      const double l = fast_length(here, there);
+      if (l < shortest && may_collapse(v, u)) {
+        shortest = l;
+        best = u;
+      }
+    }
+  if (best == none)
+    return false;
+  Acceptance acceptance{rule.collapse_floor, 1e-4, rule.longest, hausdorff_number_};
+  if (star_quality() < stuck_quality)
+    for (Index c : star_)
+      for (Index u : mesh.at(c))
+        acceptance.longest =
+            std::max(acceptance.longest, fast_length(here, mesh.vertex(u)));
+  if (!collapse(v, best, acceptance)) {
+    star_of(volume_, v, star_); // the trial has used the marks
+    return false;
+  }
+  ++counts_.collapses;
+  return true;
+}
+
+/// The mean of the places where each facet of the star would have its ideal apex,
+/// weighted towards the worst cells (in coordinates y = L^T x of the metric).
+Vector<3> VolumePasses::ideal_step(Index v, const Matrix<3> &L, double &worst,
+                                   double &sum) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const Vertex<3> &here = mesh.vertex(v);
+  const auto seen = [&](Index u) -> Vector<3> {
+    const Vector<3> e = mesh.vertex(u).x - here.x;
+    return {L(0, 0) * e[0] + L(1, 0) * e[1] + L(2, 0) * e[2],
+            L(1, 1) * e[1] + L(2, 1) * e[2], L(2, 2) * e[2]};
+  };
+  Vector<3> step = Vector<3>::Zero();
+  double weight = 0;
+  worst = 1;
+  sum = 0;
+  shapes_.clear();
+  for (Index c : star_) {
+    const Facet<3> t = facet_of<3>(mesh.at(c), mesh.local_index(c, v));
+    const double q = volume_.quality_of(c);
+    worst = std::min(worst, q);
+    sum += q;
+    shapes_.add(mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]));
+    const Vector<3> a = seen(t[0]), b = seen(t[1]), d = seen(t[2]);
+    const Vector<3> normal = (b - a).cross(d - a);
+    const double size = normal.norm();
+    if (!(size > 1e-12))
+      continue;
+    const double w = 1 / (q * q + .01);
+    step += w * ((a + b + d) / 3 + (unit_height / size) * normal);
+    weight += w;
+  }
+  return weight > 0 ? Vector<3>(step / weight) : Vector<3>(Vector<3>::Zero());
+}
+
+/// @param step in coordinates of space
+bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double sum) {
+  const auto i = static_cast<std::size_t>(v);
+  Vertex<3> &here = volume_.mesh.vertices[i];
+  const Vector<3> x =
+      volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
+  if (!shapes_.are_positive(x))
+    return false;
+  Index at = volume_.mesh.background_cell[i];
+  const Vertex<3> moved = volume_.background.vertex(x, at);
+  shapes_.evaluate(moved);
+  const double least = shapes_.minimum(), total = shapes_.sum();
+  const double n = static_cast<double>(star_.size());
+  const double floor = std::min(worst, move_floor);
+  if (least < floor - 1e-6 || least <= 0)
+    return false;
+  const bool is_better = (least > better_by(1e-4, worst) && total > sum - .02 * n) ||
+                         total > sum + .002 * n;
+  if (!is_better || (volume_.feature(v) != 3 &&
+                     !keeps_surfaces(volume_, star_, v, x, hausdorff_number_)))
+    return false;
+  here = moved;
+  volume_.mesh.background_cell[i] = at;
+  for (std::size_t k = 0; k < star_.size(); ++k) {
+    volume_.quality[static_cast<std::size_t>(star_[k])] = shapes_.quality(k);
+    volume_.touch(star_[k]);
+  }
+  ++counts_.moves;
+  return true;
+}
+
+/// @pre star_ is the star of v.
+void VolumePasses::move(Index v) {
+  if (star_.size() > StarShapes::capacity)
+    return;
+  const Matrix<3> L = lower_factor<3>(volume_.mesh.vertex(v).M);
+  double worst = 1, sum = 0;
+  const Vector<3> ideal = ideal_step(v, L, worst, sum);
+  if (ideal.squaredNorm() < smallest_step * smallest_step && worst > .5)
+    return;
+  const auto in_space = [&](const Vector<3> &y) -> Vector<3> { // L^T x = y
+    Vector<3> x;
+    x[2] = y[2] / L(2, 2);
+    x[1] = (y[1] - L(2, 1) * x[2]) / L(1, 1);
+    x[0] = (y[0] - L(1, 0) * x[1] - L(2, 0) * x[2]) / L(0, 0);
+    return x;
+  };
+  for (const double fraction : {1., .4})
+    if (try_move(v, in_space(fraction * ideal), worst, sum))
+      return;
+  if (worst > random_below)
+    return;
+  CounterRandom random(seed_, static_cast<std::uint64_t>(v), volume_.clock);
+  Vector<3> y;
+  do
+    for (int k = 0; k < 3; ++k)
+      y[k] = 2 * random.uniform() - 1;
+  while (y.squaredNorm() > 1);
+  (void)try_move(v, in_space(random_radius * y), worst, sum);
+}
+
+/// @pre star_ is the star of v, marked.
+void VolumePasses::reinsert(Index v, double floor) {
+  const std::size_t n_star = star_.size();
+  grow_cavity(volume_, v, star_);
+  if (volume_.is_put_off)
+    return;
+  if (star_.size() == n_star)
+    return;
+  const Acceptance acceptance{.floor = std::min(floor, star_quality()),
+                              .gain = 0,
+                              .longest = longest_reinserted,
+                              .is_apex_in_place = true};
+  if (operator_.replace(star_, v, {none, none}, acceptance))
+    ++counts_.insertions;
+}
+
+/// @param is_placed whether v waits only for its re-insertion
+void VolumePasses::treat_vertex(Index v, const VertexRule &rule,
+                                std::uint8_t &is_placed) {
+  star_of(volume_, v, star_);
+  if (is_placed == 0) {
+    if (collapse_shortest(v, rule) || volume_.is_put_off)
+      return;
+    move(v);
+    is_placed = 1;
+  }
+  if (rule.reinsert)
+    reinsert(v, rule.reinsertion_floor);
+}
+
+void VolumePasses::vertices(const VertexRule &rule) {
+  const std::uint32_t since = begin(Pass::vertex);
+  const Triangulation<3> &mesh = volume_.mesh;
+  std::vector<Index> all;
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k)
+    if (mesh.is_used(static_cast<Index>(k)) &&
+        mesh.feature[k] != Triangulation<3>::corner)
+      all.push_back(static_cast<Index>(k));
+  std::vector<std::uint8_t> is_placed(mesh.vertices.size(), 0);
+  in_slabs(
+      std::move(all),
+      [&](Index v, int round) { // the graph of ridges is no slab's
+        return volume_.feature(v) <= 1 ? Slabs::nowhere
+                                       : volume_.data->slabs.of_star(v, round);
+      },
+      [&, since](VolumePasses &passes, Index v) {
+        const auto k = static_cast<std::size_t>(v);
+        if (mesh.is_used(v) && volume_.vertex_clock[k] >= since)
+          passes.treat_vertex(v, rule, is_placed[k]);
+      });
+}
+
+} // namespace anistar

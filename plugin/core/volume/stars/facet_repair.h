@@ -1,0 +1,48 @@
+#pragma once
+// Changes of topology that make the metrics of a volume mesh agree.
+
+#include "base/monitor.h"
+#include "volume/mesh/cavity_operator.h"
+#include "volume/stars/relocation.h"
+
+namespace anistar {
+
+/// Tries what the cavity operator can do at a failing facet, scored by the exact change
+/// in AgreementCost before anything is changed.
+class FacetRepair {
+public:
+  FacetRepair(AgreementState &state, Monitor &monitor)
+      : state_(state), volume_(state.volume), operator_(state.volume),
+        monitor_(monitor) {}
+
+  /// What the cost must do: go down, or count fewer facets.
+  enum class Demand { lower_cost, fewer_failing };
+
+  /// The facet becomes an edge, or one of its edges is removed.
+  bool swap(HalfFacet facet, Demand demand);
+  /// The star of v grows to its Delaunay star in the metric of v.
+  bool reinsert(Index v);
+  /// One of the five vertices of the facet is collapsed, or an edge between them split,
+  /// when fewer facets fail after that.
+  bool collapse_or_insert(HalfFacet facet, CounterRandom &random);
+
+private:
+  AgreementState &state_;
+  Volume &volume_;
+  CavityOperator operator_;
+  Monitor &monitor_;
+  Shell shell_;
+  std::vector<Index> star_, new_cells_;
+
+  [[nodiscard]] bool replace(std::span<const Index> cells, Index apex,
+                             std::array<Index, 2> lost, const Acceptance &acceptance,
+                             Demand demand);
+  [[nodiscard]] bool is_worth_it(std::span<const Index> cells, Demand demand);
+  [[nodiscard]] AgreementCost cost_of(std::span<const Index> cells);
+  [[nodiscard]] AgreementCost cost_of_proposal() const;
+  [[nodiscard]] bool remove_edge(Index c, Index a, Index b, Demand demand);
+  [[nodiscard]] bool collapse(Index v, Index u);
+  [[nodiscard]] bool insert(Index c, Index a, Index b, CounterRandom &random);
+};
+
+} // namespace anistar
