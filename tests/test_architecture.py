@@ -19,6 +19,7 @@ CORE_FOLDERS = [
     "metric",
     "transfer",
     "certificate",
+    "stars",
     "remesh",
     "plane",
     "surface",
@@ -26,6 +27,8 @@ CORE_FOLDERS = [
 ]
 # 2D and 3D know nothing of each other.
 APART = [("plane", "surface"), ("plane", "volume")]
+# The rooms of a mesher, a storey a line. Those of one storey do not include each other.
+ROOMS_OF_A_MESHER = [{"geometry"}, {"mesh"}, {"passes", "stars"}]
 
 MADE_BY_COMMANDS = {"anistar-demo", "anistar-demo-3d", "build", "dist"}
 
@@ -230,6 +233,20 @@ def test_folders_of_the_core_include_in_one_direction():
     assert {path.name for path in CORE.iterdir()} == {*CORE_FOLDERS, "bindings"}
     rank = {folder: number for number, folder in enumerate([*CORE_FOLDERS, "bindings"])}
     assert [(one, other) for one, other in core_includes() if rank[other] > rank[one]] == []
+
+
+@pytest.mark.parametrize("mesher", ["plane", "volume"])
+def test_rooms_of_a_mesher_include_in_one_direction(mesher):
+    rank = {room: k for k, storey in enumerate(ROOMS_OF_A_MESHER) for room in storey}
+    assert {path.name for path in (CORE / mesher).iterdir() if path.is_dir()} <= rank.keys()
+    upward = []
+    for path in (CORE / mesher).glob("*/*.*"):
+        room = path.parent.name
+        for other in re.findall(rf'^#include "{mesher}/([^"]+)"', path.read_text(), re.MULTILINE):
+            inside = other.partition("/")[0]
+            if inside != room and not ("/" in other and rank[inside] < rank[room]):
+                upward.append((path.name, other))
+    assert upward == []
 
 
 def test_the_2d_and_the_3d_mesher_do_not_include_each_other():

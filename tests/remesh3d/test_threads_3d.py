@@ -10,7 +10,7 @@ from remesh3d.domains import changed, layer, uniform
 from anistar import Mesh, RemeshOptions, remesh, validate
 from anistar.metric import complexity
 
-SEVERAL_SLABS = 8192  # vertices: two slabs, then three; see cut_into_slabs in volume/slabs.cpp
+SEVERAL_SLABS = 8192  # vertices: two slabs, then three; see cut_into_slabs in volume/mesh/slabs.cpp
 
 
 def of_complexity(mesh, M, n):

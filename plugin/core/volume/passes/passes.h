@@ -5,6 +5,7 @@
 #include "remesh/remesh_settings.h"
 #include "volume/mesh/cavity_operator.h"
 #include "volume/mesh/densest_shapes.h"
+#include "volume/mesh/shell.h"
 #include "volume/mesh/vertex_star.h"
 
 #include <map>

@@ -1,6 +1,5 @@
 #include "base/parallel.h"
 #include "volume/passes/passes.h"
-#include "volume/stars/insertion.h"
 
 namespace anistar {
 namespace {

@@ -4,6 +4,7 @@
 #include "mesh/mesh_walk.h"
 #include "stars/bad_cells.h"
 #include "stars/round_bounds.h"
+#include "volume/mesh/shell.h"
 #include "volume/stars/agreement.h"
 #include "volume/stars/star_check.h"
 #include "volume/stars/vertex_mover.h"

@@ -1,6 +1,6 @@
 #include "volume/stars/facet_repair.h"
 
-#include "volume/passes/passes.h"
+#include "volume/mesh/vertex_star.h"
 
 namespace anistar {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "base/monitor.h"
 #include "volume/mesh/cavity_operator.h"
+#include "volume/mesh/shell.h"
 #include "volume/stars/relocation.h"
 
 namespace anistar {

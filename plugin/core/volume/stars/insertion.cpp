@@ -10,24 +10,6 @@ constexpr std::size_t max_cells = 96;
 
 } // namespace
 
-EdgeFeature feature_of(const Volume &volume, const Shell &shell) {
-  EdgeFeature out;
-  const EdgeWalls walls = walls_at(volume, shell);
-  for (std::size_t k = 0; k < std::min(walls.n, walls.patch.size()); ++k)
-    out.is_frozen = out.is_frozen || volume.surface.patch(walls.patch[k]).is_frozen;
-  if (volume.feature(shell.a) <= 1 && volume.feature(shell.b) <= 1)
-    out.ridge = volume.ridges.find(shell.a, shell.b);
-  if (out.ridge != none) {
-    out.dimension = 1;
-    out.lies_on = volume.ridges.at(out.ridge).curve;
-    out.is_frozen = out.is_frozen || volume.surface.curve(out.lies_on).is_frozen;
-  } else if (walls.n > 0) {
-    out.dimension = 2;
-    out.lies_on = walls.patch[0];
-  }
-  return out;
-}
-
 /// Whether the point will lie in the plane of a facet: it moves a vertex of it, or
 /// splits an edge.
 bool VolumeInsertion::holds(const Facet<3> &facet) const {

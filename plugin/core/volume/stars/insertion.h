@@ -7,14 +7,6 @@
 
 namespace anistar {
 
-/// An edge of the mesh as a place for a new vertex.
-struct EdgeFeature {
-  Index dimension = 3, lies_on = none; ///< of its inner points
-  Index ridge = none;                  ///< entry of the ridge graph
-  bool is_frozen = false;
-};
-[[nodiscard]] EdgeFeature feature_of(const Volume &volume, const Shell &shell);
-
 /// What pick_valid compares; less is better.
 struct PointScore {
   int slivers = std::numeric_limits<int>::max(); ///< that the point would make

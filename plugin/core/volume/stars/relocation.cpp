@@ -1,6 +1,6 @@
 #include "volume/stars/relocation.h"
 
-#include "volume/passes/passes.h"
+#include "volume/mesh/vertex_star.h"
 
 namespace anistar {
 namespace {
