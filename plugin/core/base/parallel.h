@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <exception>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace anistar {
@@ -85,7 +86,7 @@ template <class Item, class Visit>
 template <class Value> void parallel_sort(std::vector<Value> &values, int threads) {
   const std::size_t n = values.size();
   std::size_t n_parts = 1;
-  while (n_parts < static_cast<std::size_t>(threads) && n / n_parts > (1 << 14))
+  while (std::cmp_less(n_parts, threads) && n / n_parts > (1 << 14))
     n_parts *= 2;
   const auto at = [&](std::size_t part) {
     return values.begin() + static_cast<std::ptrdiff_t>(n * part / n_parts);

@@ -169,7 +169,7 @@ template <std::size_t d>
       double sum = 0;
       for (int k = 0; k < static_cast<int>(d); ++k)
         sum += values[k] * vectors(i, k) * vectors(j, k);
-      M(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) = sum;
+      M(i, j) = sum;
     }
   return M;
 }
@@ -282,7 +282,7 @@ template <std::size_t d>
   Matrix<d> L = Matrix<d>::Zero();
   for (int i = 0; i < static_cast<int>(d); ++i)
     for (int j = 0; j <= i; ++j) {
-      double rest = M(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+      double rest = M(i, j);
       for (int k = 0; k < j; ++k)
         rest -= L(i, k) * L(j, k);
       L(i, j) = i == j ? std::sqrt(rest) : rest / L(j, j);

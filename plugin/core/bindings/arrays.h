@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <utility>
 #include <vector>
 
 namespace anistar::bindings {

@@ -60,7 +60,7 @@ Index violator(const Array2<double> &points, const Array2<Index> &cells,
                const Array2<Index> &facets, Index cell, const Array2<double> &metric) {
   const auto x = points_of<d>(points);
   const auto simplices = cells_of<d>(cells);
-  if (cell < 0 || static_cast<std::size_t>(cell) >= simplices.size())
+  if (cell < 0 || std::cmp_greater_equal(cell, simplices.size()))
     throw std::invalid_argument("cell " + std::to_string(cell) + " is out of range");
   const SymmetricTensor<d> M = tensor_of<d>(metric);
   std::vector<Vertex<d>> vertices;

@@ -13,7 +13,7 @@ template <std::size_t d> void bind_dimension(nb::module_ &module, const char *na
         const auto f = facets_of<d>(facets);
         for (const Facet<d> &facet : f)
           for (const Index v : facet)
-            if (v < 0 || static_cast<std::size_t>(v) >= p.size())
+            if (v < 0 || std::cmp_greater_equal(v, p.size()))
               throw std::invalid_argument("vertex " + std::to_string(v) +
                                           " is not a point");
         std::vector<std::array<Index, 2>> pairs;

@@ -44,13 +44,13 @@ std::vector<double> as_full(const std::vector<SymmetricTensor<d>> &tensors) {
 void check_graph(std::span<const std::int32_t> offsets,
                  std::span<const std::int32_t> neighbours, std::size_t n) {
   if (offsets.size() != n + 1 || offsets[0] != 0 ||
-      static_cast<std::size_t>(offsets[n]) != neighbours.size())
+      std::cmp_not_equal(offsets[n], neighbours.size()))
     throw std::invalid_argument("the offsets do not fit the points and neighbours");
   for (std::size_t v = 0; v < n; ++v)
     if (offsets[v] > offsets[v + 1])
       throw std::invalid_argument("the offsets decrease at point " + std::to_string(v));
   for (const std::int32_t q : neighbours)
-    if (q < 0 || static_cast<std::size_t>(q) >= n)
+    if (q < 0 || std::cmp_greater_equal(q, n))
       throw std::invalid_argument("neighbour " + std::to_string(q) +
                                   " is out of range for " + std::to_string(n) +
                                   " points");

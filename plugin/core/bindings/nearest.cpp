@@ -47,7 +47,7 @@ void bind_dimension(nb::module_ &module, const char *name, const char *facets_na
         if (M.size() != q.size() || s.size() != q.size())
           throw std::invalid_argument("every query needs a metric and a seed");
         for (const Index seed : s)
-          if (seed < 0 || static_cast<std::size_t>(seed) >= p.size())
+          if (seed < 0 || std::cmp_greater_equal(seed, p.size()))
             throw std::invalid_argument("seed " + std::to_string(seed) +
                                         " is not a point");
         std::vector<Index> nearest;

@@ -18,7 +18,7 @@ auto pieces_of(const Array2<double> &points, const Array2<Index> &cells,
     throw std::invalid_argument("a metric is needed for every point");
   for (const Cell<d> &cell : c)
     for (const Index v : cell)
-      if (v < 0 || static_cast<std::size_t>(v) >= n)
+      if (v < 0 || std::cmp_greater_equal(v, n))
         throw std::invalid_argument("cells have point " + std::to_string(v) +
                                     ", which there is not");
   Pieces found;

@@ -43,7 +43,7 @@ namespace {
   std::vector<Matrix<3>> out(n_points, Matrix<3>::Zero());
   const Jets &jets = surface.jets();
   for (std::size_t k = 0; k < jets.jets.size(); ++k) {
-    Matrix<3> &here = out[static_cast<std::size_t>(jets.vertex[k])];
+    Matrix<3> &here = out[jets.vertex[k]];
     const Matrix<3> found = as_matrix<3>(jets.jets[k].curvature);
     if (found.norm() > here.norm())
       here = found;

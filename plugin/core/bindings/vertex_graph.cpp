@@ -14,7 +14,7 @@ nb::tuple wide(Array2<std::int32_t> cells, std::size_t n_points) {
                                 std::to_string(corners));
   const std::span<const std::int32_t> rows(cells.data(), cells.size());
   for (const std::int32_t v : rows)
-    if (v < 0 || static_cast<std::size_t>(v) >= n_points)
+    if (v < 0 || std::cmp_greater_equal(v, n_points))
       throw std::invalid_argument("vertex " + std::to_string(v) +
                                   " is out of range for " + std::to_string(n_points) +
                                   " points");

@@ -24,25 +24,25 @@ template <std::size_t d> void DelaunayTest<d>::begin_walk() {
 
 template <std::size_t d>
 HalfFacet DelaunayTest<d>::door(Index from, std::size_t i) const {
-  const auto k = static_cast<std::size_t>(from);
+  const std::size_t k = from;
   const HalfFacet beyond = mesh_.neighbours[k][i];
   const bool is_open = mesh_.constraints[k][i] == none && beyond.exists() &&
-                       stamp_[static_cast<std::size_t>(beyond.cell())] != epoch_;
+                       stamp_[beyond.cell()] != epoch_;
   return is_open ? beyond : HalfFacet();
 }
 
 template <std::size_t d>
 void DelaunayTest<d>::enter(HalfFacet door, std::uint8_t depth) {
-  stamp_[static_cast<std::size_t>(door.cell())] = epoch_;
+  stamp_[door.cell()] = epoch_;
   front_.push_back({door, depth});
 }
 
 template <std::size_t d>
 Side DelaunayTest<d>::side(const Circumball<d> &ball, Index v) {
-  Known &known = known_[static_cast<std::size_t>(v)];
+  Known &known = known_[v];
   if (known.epoch == epoch_)
     return Side::outside; // of the simplex, or seen before
-  const Vector<d> &x = mesh_.vertices[static_cast<std::size_t>(v)].x;
+  const Vector<d> &x = mesh_.vertices[v].x;
   known = {epoch_, ball.power(x)};
   const Side found = ball.side(x, known.power);
   if (found == Side::boundary)
@@ -55,7 +55,7 @@ bool DelaunayTest<d>::meets(const Circumball<d> &ball, const Facet<d> &facet) co
   std::array<const Vector<d> *, d> corners;
   std::array<Bounded, d> powers;
   for (std::size_t n = 0; n < d; ++n) {
-    const auto v = static_cast<std::size_t>(facet[n]);
+    const std::size_t v = facet[n];
     corners[n] = &mesh_.vertices[v].x;
     powers[n] = known_[v].power;
   }
@@ -64,18 +64,16 @@ bool DelaunayTest<d>::meets(const Circumball<d> &ball, const Facet<d> &facet) co
 
 template <std::size_t d>
 Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
-  const auto cell_at = [&](Index c) -> const Cell<d> & {
-    return mesh_.cells[static_cast<std::size_t>(c)];
-  };
+  const auto cell_at = [&](Index c) -> const Cell<d> & { return mesh_.cells[c]; };
   begin_walk();
   Simplex<d> simplex;
   for (std::size_t k = 0; k <= d; ++k) {
-    const auto v = static_cast<std::size_t>(cell_at(cell)[k]);
+    const std::size_t v = cell_at(cell)[k];
     simplex[k] = mesh_.vertices[v].x;
     known_[v] = {epoch_, {}};
   }
   const Circumball<d> ball(M, simplex);
-  stamp_[static_cast<std::size_t>(cell)] = epoch_;
+  stamp_[cell] = epoch_;
   for (std::size_t i = 0; i <= d; ++i)
     if (const HalfFacet beyond = door(cell, i); beyond.exists())
       enter(beyond, 1);
@@ -97,9 +95,9 @@ Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
 }
 
 template <std::size_t d> std::uint8_t DelaunayTest<d>::bits(Index cell) {
-  const Cell<d> &vertices = mesh_.cells[static_cast<std::size_t>(cell)];
+  const Cell<d> &vertices = mesh_.cells[cell];
   const auto metric = [&](unsigned k) -> const SymmetricTensor<d> & {
-    return mesh_.vertices[static_cast<std::size_t>(vertices[k])].M;
+    return mesh_.vertices[vertices[k]].M;
   };
   unsigned found = 0;
   reach_ = 0;
@@ -127,7 +125,7 @@ void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> cells, int threads
       const std::size_t begin = part * cells_at_once;
       for (std::size_t k = begin; is_going && k < std::min(n, begin + cells_at_once);
            ++k) {
-        const auto c = static_cast<std::size_t>(cells[k]);
+        const std::size_t c = cells[k];
         known.bits[c] = test.bits(cells[k]);
         known.reach[c] = test.reach();
       }
@@ -152,9 +150,9 @@ std::vector<Index> dependent_cells(std::span<const Neighbours<d>> neighbours,
   std::vector<bool> is_seen(neighbours.size(), false);
   std::vector<Index> layer, next, found;
   const auto see = [&](Index c) {
-    if (is_seen[static_cast<std::size_t>(c)])
+    if (is_seen[c])
       return;
-    is_seen[static_cast<std::size_t>(c)] = true;
+    is_seen[c] = true;
     next.push_back(c);
   };
   for (Index c : changed)
@@ -165,9 +163,9 @@ std::vector<Index> dependent_cells(std::span<const Neighbours<d>> neighbours,
     layer.swap(next);
     next.clear();
     for (Index c : layer) {
-      if (reach[static_cast<std::size_t>(c)] >= distance)
+      if (reach[c] >= distance)
         found.push_back(c);
-      for (HalfFacet beyond : neighbours[static_cast<std::size_t>(c)])
+      for (HalfFacet beyond : neighbours[c])
         if (beyond.exists())
           see(beyond.cell());
     }

@@ -46,9 +46,7 @@ private:
   std::vector<Neighbours<d>> neighbours_;
   Walls walls_;
 
-  [[nodiscard]] const Vertex<d> &vertex(Index v) const {
-    return vertices_[static_cast<std::size_t>(v)];
-  }
+  [[nodiscard]] const Vertex<d> &vertex(Index v) const { return vertices_[v]; }
   [[nodiscard]] Simplex<d> simplex(std::size_t c) const {
     Simplex<d> s;
     for (std::size_t k = 0; k <= d; ++k)
@@ -74,7 +72,7 @@ private:
     for (std::size_t c = 0; c < cells_.size(); ++c)
       for (std::size_t k = 0; k <= d; ++k)
         if ((bits[c] >> k & 1) == 0)
-          ok[static_cast<std::size_t>(cells_[c][k])] = 0;
+          ok[cells_[c][k]] = 0;
     return ok;
   }
 
@@ -109,7 +107,7 @@ private:
     out.distortion.assign(vertices_.size(), 1);
     for (std::size_t e = 0; e < edges.size(); ++e)
       for (Index v : edges[e]) {
-        double &worst = out.distortion[static_cast<std::size_t>(v)];
+        double &worst = out.distortion[v];
         worst = std::max(worst, gamma[e]);
       }
   }
@@ -170,10 +168,10 @@ private:
       HalfFacet out;
       bool crossed = false;
       for (std::size_t i = 0; i <= d && !crossed; ++i) {
-        Simplex<d> replaced = simplex(static_cast<std::size_t>(c));
+        Simplex<d> replaced = simplex(c);
         replaced[i] = x;
         if (orientation<d>(replaced) == Orientation::negative) {
-          out = neighbours_[static_cast<std::size_t>(c)][i];
+          out = neighbours_[c][i];
           crossed = true;
         }
       }
@@ -198,7 +196,7 @@ std::vector<std::array<Index, d + 1>> walls(std::span<const Cell<d>> cells,
   for (Facet<d> &facet : known) {
     std::sort(facet.begin(), facet.end());
     for (Index v : facet)
-      on_facet[static_cast<std::size_t>(v)] = true;
+      on_facet[v] = true;
   }
   std::sort(known.begin(), known.end());
   std::vector<std::array<Index, d + 1>> out(cells.size());
@@ -206,9 +204,8 @@ std::vector<std::array<Index, d + 1>> walls(std::span<const Cell<d>> cells,
     for (std::size_t i = 0; i <= d; ++i) {
       Facet<d> facet = facet_of<d>(cells[c], i);
       std::sort(facet.begin(), facet.end());
-      const bool may_be = std::all_of(facet.begin(), facet.end(), [&](Index v) {
-        return on_facet[static_cast<std::size_t>(v)];
-      });
+      const bool may_be =
+          std::all_of(facet.begin(), facet.end(), [&](Index v) { return on_facet[v]; });
       out[c][i] =
           may_be && std::binary_search(known.begin(), known.end(), facet) ? 0 : none;
     }

@@ -313,7 +313,7 @@ bool Circumball<d>::meets(const std::array<const Vector<d> *, d> &facet,
     // that a facet with one vertex on it meets it where an edge from there does
     if (std::any_of(on + 1, powers.end(), is_on_ball))
       return true;
-    return leaves_inwards(facet, static_cast<std::size_t>(on - powers.begin()));
+    return leaves_inwards(facet, on - powers.begin());
   }
   if constexpr (d == 2)
     return meets_segment(*facet[0], *facet[1], powers[0], powers[1]);

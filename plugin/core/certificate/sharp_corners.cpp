@@ -53,14 +53,10 @@ private:
   std::vector<std::uint8_t> exempt_;
   std::map<Hinge<d>, int> exempt_at_; ///< vertices exempt at each corner so far
 
-  [[nodiscard]] const Vector<d> &x(Index v) const {
-    return mesh_.vertices[static_cast<std::size_t>(v)].x;
-  }
-  [[nodiscard]] const Cell<d> &cell_at(Index c) const {
-    return mesh_.cells[static_cast<std::size_t>(c)];
-  }
+  [[nodiscard]] const Vector<d> &x(Index v) const { return mesh_.vertices[v].x; }
+  [[nodiscard]] const Cell<d> &cell_at(Index c) const { return mesh_.cells[c]; }
   [[nodiscard]] bool is_wall(Index c, std::size_t i) const {
-    return mesh_.constraints[static_cast<std::size_t>(c)][i] != none;
+    return mesh_.constraints[c][i] != none;
   }
   [[nodiscard]] static std::size_t local(const Cell<d> &cell, Index v) {
     return static_cast<std::size_t>(std::find(cell.begin(), cell.end(), v) -
@@ -119,7 +115,7 @@ private:
         shell.push_back(cell_at(c)[i]);
         break;
       }
-      const HalfFacet next = mesh_.neighbours[static_cast<std::size_t>(c)][j];
+      const HalfFacet next = mesh_.neighbours[c][j];
       if (!next.exists())
         return;
       // the vertex opposite the facet that we left through is behind the next one
@@ -133,7 +129,7 @@ private:
 
   void exempt(const std::vector<Index> &shell, int &n_exempt) {
     for (Index v : shell) {
-      const auto k = static_cast<std::size_t>(v);
+      const std::size_t k = v;
       if (star_ok_[k] == 0 && exempt_[k] == 0 && n_exempt < max_exempt) {
         exempt_[k] = 1;
         ++n_exempt;
@@ -149,19 +145,18 @@ private:
       for (std::size_t i = 0; i <= d; ++i)
         if (is_wall(static_cast<Index>(c), i))
           for (Index v : facet_of<d>(mesh_.cells[c], i))
-            on_wall[static_cast<std::size_t>(v)] = true;
+            on_wall[v] = true;
     std::vector<std::uint8_t> seen(mesh_.cells.size(), 0);
     for (std::size_t c = 0; c < mesh_.cells.size(); ++c)
       for (std::size_t k = 0; k <= d; ++k)
-        if ((seen[c] >> k & 1) == 0 &&
-            on_wall[static_cast<std::size_t>(mesh_.cells[c][k])])
+        if ((seen[c] >> k & 1) == 0 && on_wall[mesh_.cells[c][k]])
           try_tip(mesh_.cells[c][k], static_cast<Index>(c), seen);
   }
 
   void try_tip(Index tip, Index first, std::vector<std::uint8_t> &seen) {
     if constexpr (d == 3) {
       const auto visit = [&](Index c) {
-        std::uint8_t &marks = seen[static_cast<std::size_t>(c)];
+        std::uint8_t &marks = seen[c];
         const auto bit = static_cast<std::uint8_t>(1u << local(cell_at(c), tip));
         const bool is_new = (marks & bit) == 0;
         marks |= bit;
@@ -182,7 +177,7 @@ private:
             continue;
           if (total < sharp_solid_angle)
             shell.push_back(cell_at(c)[i]);
-          const HalfFacet beyond = mesh_.neighbours[static_cast<std::size_t>(c)][i];
+          const HalfFacet beyond = mesh_.neighbours[c][i];
           if (!is_wall(c, i) && beyond.exists() && visit(beyond.cell()))
             cells.push_back(beyond.cell());
         }

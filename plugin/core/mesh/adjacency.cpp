@@ -45,18 +45,17 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
   std::vector<Index> fill(start.begin(), start.end() - 1);
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (std::size_t i = 0; i <= d; ++i)
-      halves[static_cast<std::size_t>(fill[lowest<d>(facet_of<d>(cells[c], i))]++)] =
+      halves[fill[lowest<d>(facet_of<d>(cells[c], i))]++] =
           HalfFacet(static_cast<Index>(c), i);
   const auto side_of = [&](HalfFacet half) -> HalfFacet & {
-    return neighbours[static_cast<std::size_t>(half.cell())][half.facet()];
+    return neighbours[half.cell()][half.facet()];
   };
   std::vector<Facet<d>> facets; // of the bucket
   for (std::size_t v = 0; v < n_points; ++v) {
     const std::span bucket(halves.begin() + start[v], halves.begin() + start[v + 1]);
     facets.clear();
     for (HalfFacet half : bucket)
-      facets.push_back(sorted<d>(
-          facet_of<d>(cells[static_cast<std::size_t>(half.cell())], half.facet())));
+      facets.push_back(sorted<d>(facet_of<d>(cells[half.cell()], half.facet())));
     for (std::size_t p = 0; p < bucket.size(); ++p)
       for (std::size_t q = p + 1; q < bucket.size(); ++q) {
         // the lowest vertex is the same

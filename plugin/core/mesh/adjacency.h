@@ -5,12 +5,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace anistar {
 
 using Index = std::int32_t;
 inline constexpr Index none = -1;
+
+/// An entry for every vertex, or for every cell: what an Index selects from.
+template <class T> using PerVertex = std::vector<T>;
+template <class T> using PerCell = std::vector<T>;
 
 /// The d + 1 vertices of a simplex, positively oriented. Facet i lies opposite vertex
 /// i.

@@ -34,8 +34,7 @@ Walk walk_to(const Triangulation<d> &mesh, Index start, const Vector<d> &x,
   Index cell = start;
   HalfFacet came;
   for (int step = 0; step < max_steps<d>; ++step) {
-    const HalfFacet cross =
-        facet_before<d>(mesh, cell, x, static_cast<std::size_t>(step), came);
+    const HalfFacet cross = facet_before<d>(mesh, cell, x, step, came);
     if (!cross.exists())
       return {cell, {}};
     if (mesh.constraint(cross) != none)

@@ -28,8 +28,7 @@ struct Sums {
     length_min = std::min(length_min, l);
     length_max = std::max(length_max, l);
     n_unit += l >= shortest_unit && l <= longest_unit;
-    ++lengths[static_cast<std::size_t>(std::upper_bound(bins.begin(), bins.end(), l) -
-                                       bins.begin())];
+    ++lengths[std::upper_bound(bins.begin(), bins.end(), l) - bins.begin()];
   }
   Sums &operator+=(const Sums &other) {
     length += other.length;
@@ -102,15 +101,13 @@ DistortionQuantiles quantiles(std::vector<double> values) {
 
 Statistics measure(std::span<const Vertex<2>> vertices, std::span<const Cell<2>> cells,
                    std::span<const Neighbours<2>> neighbours, int threads) {
-  const auto vertex = [&](Index v) -> const Vertex<2> & {
-    return vertices[static_cast<std::size_t>(v)];
-  };
+  const auto vertex = [&](Index v) -> const Vertex<2> & { return vertices[v]; };
   const Sums all = summed(cells.size(), threads, [&](Sums &sums, std::size_t c) {
     const Cell<2> &cell = cells[c];
     sums.add_cell(quality(vertex(cell[0]), vertex(cell[1]), vertex(cell[2])));
     for (std::size_t i = 0; i < 3; ++i) {
       const HalfFacet other = neighbours[c][i];
-      if (other.exists() && static_cast<std::size_t>(other.cell()) < c)
+      if (other.exists() && std::cmp_less(other.cell(), c))
         continue; // counted from the other side
       const auto [a, b] = facet_of<2>(cell, i);
       sums.add_edge(edge_length(vertex(a), vertex(b)));
@@ -121,9 +118,7 @@ Statistics measure(std::span<const Vertex<2>> vertices, std::span<const Cell<2>>
 
 Statistics measure(std::span<const Vertex<3>> vertices, std::span<const Cell<3>> cells,
                    std::span<const std::array<Index, 2>> edges, int threads) {
-  const auto vertex = [&](Index v) -> const Vertex<3> & {
-    return vertices[static_cast<std::size_t>(v)];
-  };
+  const auto vertex = [&](Index v) -> const Vertex<3> & { return vertices[v]; };
   Sums all = summed(cells.size(), threads, [&](Sums &sums, std::size_t c) {
     const Cell<3> &cell = cells[c];
     sums.add_cell(
@@ -161,8 +156,7 @@ DistortionQuantiles distortion_quantiles(std::span<const Vertex<2>> vertices,
     for (std::size_t c = begin; c < end; ++c)
       for (std::size_t i = 0; i < 3; ++i) {
         const auto [a, b] = facet_of<2>(cells[c], i); // interior edges count twice
-        values[3 * c + i] = distortion(vertices[static_cast<std::size_t>(a)].M,
-                                       vertices[static_cast<std::size_t>(b)].M);
+        values[3 * c + i] = distortion(vertices[a].M, vertices[b].M);
       }
   });
   return quantiles(std::move(values));
@@ -174,8 +168,7 @@ DistortionQuantiles distortion_quantiles(std::span<const Vertex<3>> vertices,
   std::vector<double> values(edges.size());
   parallel_ranges(edges.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e)
-      values[e] = distortion(vertices[static_cast<std::size_t>(edges[e][0])].M,
-                             vertices[static_cast<std::size_t>(edges[e][1])].M);
+      values[e] = distortion(vertices[edges[e][0]].M, vertices[edges[e][1]].M);
   });
   return quantiles(std::move(values));
 }

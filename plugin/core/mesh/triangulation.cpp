@@ -10,7 +10,7 @@ namespace anistar {
 void star_of(const Triangulation<2> &mesh, Index v, std::vector<HalfFacet> &star) {
   star.clear();
   // turn clockwise to the boundary, if there is one, then counter-clockwise
-  const Index start = mesh.vertex_cell[static_cast<std::size_t>(v)];
+  const Index start = mesh.vertex_cell[v];
   Index first = start;
   for (;;) {
     const std::size_t i = mesh.local_index(first, v);
@@ -37,7 +37,7 @@ void permute(std::vector<T> &values, const std::vector<Index> &order, int thread
   std::vector<T> sorted(order.size());
   parallel_ranges(order.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      sorted[k] = values[static_cast<std::size_t>(order[k])];
+      sorted[k] = values[order[k]];
   });
   values.resize(order.size());
   std::copy(sorted.begin(), sorted.end(), values.begin());
@@ -46,7 +46,7 @@ void permute(std::vector<T> &values, const std::vector<Index> &order, int thread
 std::vector<Index> inverse(const std::vector<Index> &order, std::size_t n) {
   std::vector<Index> rank(n, none);
   for (std::size_t k = 0; k < order.size(); ++k)
-    rank[static_cast<std::size_t>(order[k])] = static_cast<Index>(k);
+    rank[order[k]] = static_cast<Index>(k);
   return rank;
 }
 
@@ -54,17 +54,16 @@ template <std::size_t d>
 std::vector<Index> cells_by_first_vertex(const Triangulation<d> &mesh) {
   std::vector<Index> start(mesh.vertices.size() + 1, 0);
   const auto first = [&](const Cell<d> &cell) {
-    return static_cast<std::size_t>(*std::min_element(cell.begin(), cell.end()));
+    return *std::min_element(cell.begin(), cell.end());
   };
   for (const Cell<d> &cell : mesh.cells)
     if (cell[0] != none)
       ++start[first(cell) + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<Index> order(static_cast<std::size_t>(start.back()));
+  std::vector<Index> order(start.back());
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     if (mesh.cells[c][0] != none)
-      order[static_cast<std::size_t>(start[first(mesh.cells[c])]++)] =
-          static_cast<Index>(c);
+      order[start[first(mesh.cells[c])]++] = static_cast<Index>(c);
   return order;
 }
 
@@ -81,7 +80,7 @@ std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads, double 
     }
   std::vector<Index> order = hilbert_order<d>(points, threads, shift);
   for (Index &k : order)
-    k = used[static_cast<std::size_t>(k)];
+    k = used[k];
   const std::vector<Index> rank = inverse(order, mesh.vertices.size());
   permute(mesh.vertices, order, threads);
   permute(mesh.feature, order, threads);
@@ -91,7 +90,7 @@ std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads, double 
     for (std::size_t c = begin; c < end; ++c)
       if (mesh.cells[c][0] != none)
         for (Index &v : mesh.cells[c])
-          v = rank[static_cast<std::size_t>(v)];
+          v = rank[v];
   });
 
   const std::vector<Index> cell_order = cells_by_first_vertex(mesh);
@@ -105,11 +104,11 @@ std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads, double 
     for (std::size_t c = begin; c < end; ++c)
       for (HalfFacet &h : mesh.neighbours[c])
         if (h.exists())
-          h = HalfFacet(cell_rank[static_cast<std::size_t>(h.cell())], h.facet());
+          h = HalfFacet(cell_rank[h.cell()], h.facet());
   });
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (Index v : mesh.cells[c])
-      mesh.vertex_cell[static_cast<std::size_t>(v)] = static_cast<Index>(c);
+      mesh.vertex_cell[v] = static_cast<Index>(c);
   return rank;
 }
 

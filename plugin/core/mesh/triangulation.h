@@ -27,21 +27,21 @@ template <std::size_t d> struct Triangulation {
   static constexpr Index corner = 0;   ///< feature dimension of a vertex that must stay
   static constexpr Index interior = d; ///< and of a vertex that is free
 
-  std::vector<Vertex<d>> vertices;
-  std::vector<Index> feature;         ///< dimension of the feature a vertex lies on
-  std::vector<Index> vertex_cell;     ///< one cell of its star, none when removed
-  std::vector<Index> background_cell; ///< where its metric was found
+  PerVertex<Vertex<d>> vertices;
+  PerVertex<Index> feature;         ///< dimension of the feature a vertex lies on
+  PerVertex<Index> vertex_cell;     ///< one cell of its star, none when removed
+  PerVertex<Index> background_cell; ///< where its metric was found
 
-  std::vector<Cell<d>> cells; ///< cells[c][0] == none when c is free
-  std::vector<Neighbours<d>> neighbours;
-  std::vector<std::array<Index, d + 1>> constraints;
-  std::vector<Index> region;
+  PerCell<Cell<d>> cells; ///< cells[c][0] == none when c is free
+  PerCell<Neighbours<d>> neighbours;
+  PerCell<std::array<Index, d + 1>> constraints;
+  PerCell<Index> region;
   std::vector<Index> free_cells;
 
   [[nodiscard]] Index add_vertex(const Vertex<d> &vertex, Index feature_dimension,
                                  Index background, Slots *slots = nullptr) {
     if (slots) {
-      const auto v = static_cast<std::size_t>(slots->vertex);
+      const std::size_t v = slots->vertex;
       vertices[v] = vertex;
       feature[v] = feature_dimension;
       background_cell[v] = background;
@@ -74,16 +74,16 @@ template <std::size_t d> struct Triangulation {
     const auto m = static_cast<Index>(cells.size() + 2 * n_new);
     const Slots slots{static_cast<Index>(vertices.size()), n,
                       static_cast<Index>(cells.size()), m};
-    vertices.resize(static_cast<std::size_t>(n));
-    feature.resize(static_cast<std::size_t>(n), interior);
-    vertex_cell.resize(static_cast<std::size_t>(n), none);
-    background_cell.resize(static_cast<std::size_t>(n), none);
+    vertices.resize(n);
+    feature.resize(n, interior);
+    vertex_cell.resize(n, none);
+    background_cell.resize(n, none);
     Cell<d> free;
     free.fill(none);
-    cells.resize(static_cast<std::size_t>(m), free);
-    neighbours.resize(static_cast<std::size_t>(m));
-    constraints.resize(static_cast<std::size_t>(m), free);
-    region.resize(static_cast<std::size_t>(m), none);
+    cells.resize(m, free);
+    neighbours.resize(m);
+    constraints.resize(m, free);
+    region.resize(m, none);
     return slots;
   }
   void free_cell(Index c) {
@@ -91,25 +91,17 @@ template <std::size_t d> struct Triangulation {
     free_cells.push_back(c);
   }
 
-  [[nodiscard]] Cell<d> &at(Index c) { return cells[static_cast<std::size_t>(c)]; }
-  [[nodiscard]] const Cell<d> &at(Index c) const {
-    return cells[static_cast<std::size_t>(c)];
-  }
-  [[nodiscard]] Vertex<d> &vertex(Index v) {
-    return vertices[static_cast<std::size_t>(v)];
-  }
-  [[nodiscard]] const Vertex<d> &vertex(Index v) const {
-    return vertices[static_cast<std::size_t>(v)];
-  }
+  [[nodiscard]] Cell<d> &at(Index c) { return cells[c]; }
+  [[nodiscard]] const Cell<d> &at(Index c) const { return cells[c]; }
+  [[nodiscard]] Vertex<d> &vertex(Index v) { return vertices[v]; }
+  [[nodiscard]] const Vertex<d> &vertex(Index v) const { return vertices[v]; }
   [[nodiscard]] bool is_alive(Index c) const { return at(c)[0] != none; }
-  [[nodiscard]] bool is_used(Index v) const {
-    return vertex_cell[static_cast<std::size_t>(v)] != none;
-  }
+  [[nodiscard]] bool is_used(Index v) const { return vertex_cell[v] != none; }
   [[nodiscard]] HalfFacet opposite(HalfFacet h) const {
-    return neighbours[static_cast<std::size_t>(h.cell())][h.facet()];
+    return neighbours[h.cell()][h.facet()];
   }
   [[nodiscard]] Index constraint(HalfFacet h) const {
-    return constraints[static_cast<std::size_t>(h.cell())][h.facet()];
+    return constraints[h.cell()][h.facet()];
   }
   [[nodiscard]] Facet<d> facet(HalfFacet h) const {
     return facet_of<d>(at(h.cell()), h.facet());
@@ -118,12 +110,12 @@ template <std::size_t d> struct Triangulation {
   [[nodiscard]] Index apex(HalfFacet h) const { return at(h.cell())[h.facet()]; }
 
   void set_constraint(HalfFacet h, Index value) {
-    constraints[static_cast<std::size_t>(h.cell())][h.facet()] = value;
+    constraints[h.cell()][h.facet()] = value;
   }
   void join(HalfFacet h, HalfFacet other) {
-    neighbours[static_cast<std::size_t>(h.cell())][h.facet()] = other;
+    neighbours[h.cell()][h.facet()] = other;
     if (other.exists())
-      neighbours[static_cast<std::size_t>(other.cell())][other.facet()] = h;
+      neighbours[other.cell()][other.facet()] = h;
   }
   [[nodiscard]] std::size_t local_index(Index c, Index v) const {
     const Cell<d> &cell = at(c);

@@ -59,9 +59,7 @@ public:
     cell = at.cell;
     SymmetricTensor<d> L;
     for (std::size_t i = 0; i <= d; ++i)
-      L +=
-          at.barycentric[i] * logarithm_[static_cast<std::size_t>(
-                                  locator_.cells()[static_cast<std::size_t>(cell)][i])];
+      L += at.barycentric[i] * logarithm_[locator_.cells()[cell][i]];
     return definite_exp<d>(L);
   }
 

@@ -166,7 +166,7 @@ private:
       options_.look();
     const std::size_t p = asking.vertex;
     for (auto k = offsets_[p]; k < offsets_[p + 1]; ++k) {
-      const auto q = static_cast<std::size_t>(neighbours_[k]);
+      const std::size_t q = neighbours_[k];
       const SymmetricTensor<d> request = grown(asking, points_[q] - points_[p]);
       SymmetricTensor<d> &M = result_.metric[q];
       if (is_clearly_below(request, M))

@@ -11,7 +11,7 @@ void visit_edges(std::span<const Cell<d>> cells, Visit visit) {
   for (const Cell<d> &cell : cells)
     for (std::size_t i = 0; i <= d; ++i)
       for (std::size_t j = 0; j < i; ++j)
-        visit(static_cast<std::size_t>(cell[i]), static_cast<std::size_t>(cell[j]));
+        visit(cell[i], cell[j]);
 }
 
 } // namespace

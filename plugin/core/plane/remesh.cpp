@@ -47,7 +47,7 @@ void check_gap(const Background<2> &background, const GeometryInput &geometry) {
   const double extent = (box.high - box.low).maxCoeff();
   Index cell = none;
   for (const Facet<2> &facet : geometry.facets) {
-    const Vector<2> &x = geometry.points[static_cast<std::size_t>(facet[0])];
+    const Vector<2> &x = geometry.points[facet[0]];
     const Location<2> at = background.locator().locate(x, cell);
     cell = at.cell;
     if (at.distance > largest_gap * extent)

@@ -24,7 +24,7 @@ template <std::size_t d>
     double least = largest_kept_quality;
     for (std::size_t c = begin; c < end; ++c) {
       const auto at = [&](std::size_t i) -> const Vertex<d> & {
-        return vertices[static_cast<std::size_t>(cells[c][i])];
+        return vertices[cells[c][i]];
       };
       if constexpr (d == 2)
         least = std::min(least, quality(at(0), at(1), at(2)));

@@ -17,7 +17,7 @@ struct HausdorffNumbers {
 
 struct RemeshSettings {
   HausdorffNumbers hausdorff{};
-  std::size_t max_vertices = static_cast<std::size_t>(-1);
+  std::size_t max_vertices = std::numeric_limits<std::size_t>::max();
   double max_seconds = std::numeric_limits<double>::infinity();
   AgreementMode agreement = AgreementMode::when_possible;
   ConsistencyMode consistency = ConsistencyMode::off;

@@ -20,9 +20,9 @@ template <std::size_t d> void BoxTree<d>::extend(Index item, const Vector<d> &p)
   if (position_.empty()) {
     position_.resize(items_.size());
     for (std::size_t k = 0; k < items_.size(); ++k)
-      position_[static_cast<std::size_t>(items_[k])] = static_cast<Index>(k);
+      position_[items_[k]] = static_cast<Index>(k);
   }
-  const auto k = static_cast<std::size_t>(position_[static_cast<std::size_t>(item)]);
+  const std::size_t k = position_[item];
   item_boxes_[k].extend(p);
   for (std::size_t node = first_leaf_ + k / leaf_size;; node = (node - 1) / 2) {
     nodes_[node].extend(p);

@@ -121,7 +121,7 @@ BoxTree<d>::BoxTree(std::size_t n, BoxOf box_of, int threads) {
   centres = {}; // the boxes take their place
   item_boxes_.reserve(n);
   for (Index item : items_)
-    item_boxes_.push_back(box_of(static_cast<std::size_t>(item)));
+    item_boxes_.push_back(box_of(item));
   make_nodes();
 }
 

@@ -88,7 +88,7 @@ std::vector<std::array<Index, 2>> close_facets(std::span<const Vector<d>> points
   const auto corners = [&](std::size_t k) {
     Corners<d> corner;
     for (std::size_t i = 0; i < d; ++i)
-      corner[i] = points[static_cast<std::size_t>(facets[k][i])];
+      corner[i] = points[facets[k][i]];
     return corner;
   };
   std::vector<Box<d>> boxes(n);
@@ -112,7 +112,7 @@ std::vector<std::array<Index, 2>> close_facets(std::span<const Vector<d>> points
     const Corners<d> corner = corners(k);
     met.clear();
     tree.meeting(boxes[k], [&](Index item) {
-      const auto j = static_cast<std::size_t>(item);
+      const std::size_t j = item;
       if (j <= k)
         return true;
       const double reach = along[k].size + along[j].size;

@@ -30,9 +30,8 @@ std::vector<Box<d>> facet_boxes(std::span<const Vector<d>> points,
                                 const std::vector<HalfFacet> &facets) {
   std::vector<Box<d>> boxes(facets.size());
   for (std::size_t k = 0; k < facets.size(); ++k)
-    for (Index v : facet_of<d>(cells[static_cast<std::size_t>(facets[k].cell())],
-                               facets[k].facet()))
-      boxes[k].extend(points[static_cast<std::size_t>(v)]);
+    for (Index v : facet_of<d>(cells[facets[k].cell()], facets[k].facet()))
+      boxes[k].extend(points[v]);
   return boxes;
 }
 
@@ -48,7 +47,7 @@ template <std::size_t d> const BoxTree<d> &Locator<d>::cell_tree() const {
   const auto box_of = [&](std::size_t c) {
     Box<d> box;
     for (Index v : cells_[c])
-      box.extend(points_[static_cast<std::size_t>(v)]);
+      box.extend(points_[v]);
     return box;
   };
   return cell_tree_.get([&] { return BoxTree<d>(cells_.size(), box_of, threads_); });
@@ -66,7 +65,7 @@ const typename Locator<d>::Boundary &Locator<d>::boundary() const {
 template <std::size_t d> Simplex<d> Locator<d>::simplex(Index cell) const {
   Simplex<d> s;
   for (std::size_t i = 0; i <= d; ++i)
-    s[i] = points_[static_cast<std::size_t>(cells_[static_cast<std::size_t>(cell)][i])];
+    s[i] = points_[cells_[cell][i]];
   return s;
 }
 
@@ -79,8 +78,8 @@ template <std::size_t d> Index Locator<d>::walk(const Vector<d> &x, Index start)
     Index next = none;
     bool crossed = false;
     for (std::size_t k = 0; k <= d && !crossed; ++k) {
-      const std::size_t i = (k + static_cast<std::size_t>(step)) % (d + 1);
-      const Index beyond = neighbours_[static_cast<std::size_t>(cell)][i].cell();
+      const std::size_t i = (k + step) % (d + 1);
+      const Index beyond = neighbours_[cell][i].cell();
       if (beyond == previous && beyond != none)
         continue;
       Simplex<d> replaced = corners;
@@ -141,12 +140,12 @@ template <std::size_t d> Location<d> Locator<d>::nearest(const Vector<d> &x) con
   double best_distance = std::numeric_limits<double>::infinity();
   const Boundary &boundary = this->boundary();
   boundary.tree.nearest(x, best_distance, [&](Index item, double) {
-    const HalfFacet half = boundary.facets[static_cast<std::size_t>(item)];
-    const Cell<d> &cell = cells_[static_cast<std::size_t>(half.cell())];
+    const HalfFacet half = boundary.facets[item];
+    const Cell<d> &cell = cells_[half.cell()];
     const Facet<d> facet = facet_of<d>(cell, half.facet());
     std::array<Vector<d>, d> corners;
     for (std::size_t i = 0; i < d; ++i)
-      corners[i] = points_[static_cast<std::size_t>(facet[i])];
+      corners[i] = points_[facet[i]];
     const std::array<double, d> weights = nearest_on(x, corners);
     Vector<d> foot = Vector<d>::Zero();
     for (std::size_t i = 0; i < d; ++i)
@@ -158,8 +157,8 @@ template <std::size_t d> Location<d> Locator<d>::nearest(const Vector<d> &x) con
       best.cell = half.cell();
       best.barycentric.fill(0);
       for (std::size_t i = 0; i < d; ++i)
-        best.barycentric[static_cast<std::size_t>(
-            std::find(cell.begin(), cell.end(), facet[i]) - cell.begin())] = weights[i];
+        best.barycentric[std::find(cell.begin(), cell.end(), facet[i]) - cell.begin()] =
+            weights[i];
     }
     return best_distance;
   });
@@ -183,7 +182,7 @@ Locator<d>::locate_all(std::span<const Vector<d>> queries) const {
   std::vector<Location<d>> out(queries.size());
   Index hint = none;
   for (Index k : hilbert_order<d>(queries)) {
-    const auto q = static_cast<std::size_t>(k);
+    const std::size_t q = k;
     out[q] = locate(queries[q], hint);
     hint = out[q].cell;
   }

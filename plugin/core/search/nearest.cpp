@@ -27,8 +27,7 @@ std::vector<Index> nearest_in_metric(std::span<const Vector<d>> points,
   std::vector<Index> nearest(seeds.begin(), seeds.end());
   for (std::size_t q = 0; q < queries.size(); ++q) {
     const auto squared_distance = [&](Index item) {
-      return quadratic<d>(metrics[q],
-                          points[static_cast<std::size_t>(item)] - queries[q]);
+      return quadratic<d>(metrics[q], points[item] - queries[q]);
     };
     double best = squared_distance(nearest[q]);
     const Vector<d> reach = std::sqrt(best) * ball_extent<d>(metrics[q]);

@@ -14,7 +14,7 @@ std::vector<NearestFacet> nearest_facets(std::span<const Vector<d>> points,
   const auto corners = [&](std::size_t f) {
     std::array<Vector<d>, d> at;
     for (std::size_t i = 0; i < d; ++i)
-      at[i] = points[static_cast<std::size_t>(facets[f][i])];
+      at[i] = points[facets[f][i]];
     return at;
   };
   const BoxTree<d> tree(facets.size(), [&](std::size_t f) {
@@ -36,7 +36,7 @@ std::vector<NearestFacet> nearest_facets(std::span<const Vector<d>> points,
   for (const Vector<d> &x : queries) {
     NearestFacet best{none, std::numeric_limits<double>::infinity()};
     tree.nearest(x, best.distance, [&](Index item, double) {
-      const double here = squared_distance(x, static_cast<std::size_t>(item));
+      const double here = squared_distance(x, item);
       if (here < best.distance || (here == best.distance && item < best.facet))
         best = {item, here};
       return best.distance;

@@ -31,8 +31,7 @@ template <std::size_t d>
   const Circumsphere<d> ball = circumsphere<d>(v.M, s);
   const double shortest = shortest_length<d>(v.M, s);
   const double sf =
-      size_at<d>(background, ball, mesh.background_cell[static_cast<std::size_t>(star)],
-                 parameters.gamma_0);
+      size_at<d>(background, ball, mesh.background_cell[star], parameters.gamma_0);
   if (ball.radius >= parameters.alpha_0 * sf)
     return Rule::size;
   if (ball.radius / shortest > parameters.rho_0)

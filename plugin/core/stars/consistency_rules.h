@@ -87,7 +87,7 @@ certified_fractions(const Triangulation<d> &mesh,
     cells += bits[c] == all_vertices<d>;
     for (std::size_t k = 0; k <= d; ++k)
       if ((bits[c] >> k & 1) == 0)
-        ok[static_cast<std::size_t>(mesh.cells[c][k])] = 0;
+        ok[mesh.cells[c][k]] = 0;
   }
   for (std::size_t v = 0; v < ok.size(); ++v)
     if (mesh.is_used(static_cast<Index>(v))) {

@@ -53,15 +53,13 @@ public:
     n_star_ = star.size();
     cells_.assign(star.begin(), star.end());
     for (Index c : cells_)
-      seen_[static_cast<std::size_t>(c)] = epoch_;
+      seen_[c] = epoch_;
     std::size_t begin = 0;
     for (int layer = 0; layer < 3; ++layer)
       for (const std::size_t end = cells_.size(); begin < end; ++begin)
         for (std::size_t i = 0; i <= d; ++i) {
           const HalfFacet beyond = mesh_.opposite(HalfFacet(cells_[begin], i));
-          if (beyond.exists() &&
-              std::exchange(seen_[static_cast<std::size_t>(beyond.cell())], epoch_) !=
-                  epoch_)
+          if (beyond.exists() && std::exchange(seen_[beyond.cell()], epoch_) != epoch_)
             cells_.push_back(beyond.cell());
         }
   }
@@ -86,7 +84,7 @@ public:
   /// The vertex has moved.
   void forget() {
     for (Index c : cells_)
-      known_[static_cast<std::size_t>(c)] = unknown;
+      known_[c] = unknown;
   }
 
 private:
@@ -101,7 +99,7 @@ private:
   static constexpr std::uint8_t unknown = 255;
 
   [[nodiscard]] std::uint8_t known(Index c) {
-    std::uint8_t &bits = known_[static_cast<std::size_t>(c)];
+    std::uint8_t &bits = known_[c];
     if (bits == unknown)
       bits = test_.bits(c);
     return bits;
@@ -160,8 +158,8 @@ std::size_t mend_failures(const Triangulation<d> &mesh, Mender &mender,
     moves += moved;
     for (Index c :
          dependent_cells<d>(mesh.neighbours, mender.take_changed(), known.reach)) {
-      known.bits[static_cast<std::size_t>(c)] = mender.failures().test().bits(c);
-      known.reach[static_cast<std::size_t>(c)] = mender.failures().test().reach();
+      known.bits[c] = mender.failures().test().bits(c);
+      known.reach[c] = mender.failures().test().reach();
     }
     failing = failing_cells(mesh, known.bits);
   }

@@ -63,7 +63,7 @@ void measure_facets(const SurfaceInput &input, const Features &features,
   for (std::size_t f = 0; f < input.facets.size(); ++f) {
     const Index tag = input.facet_tags[f];
     CurvedPiece piece = order.next(*surface.surface(tag), tag);
-    if (features.patches[static_cast<std::size_t>(features.facet_patch[f])].is_frozen)
+    if (features.patches[features.facet_patch[f]].is_frozen)
       for (auto &row : piece.offsets)
         row.fill(Vector<3>::Zero());
     std::tie(out.measure[f], out.bulge[f]) = measure_piece(piece, input.points.front());
@@ -75,7 +75,7 @@ void measure_edges(const SurfaceInput &input, const Features &features,
   std::map<std::array<Index, 2>, double> length;
   InOrder order;
   for (const RidgeSegment &ridge : features.ridges) {
-    const SurfaceCurve &curve = features.curves[static_cast<std::size_t>(ridge.curve)];
+    const SurfaceCurve &curve = features.curves[ridge.curve];
     if (!curve.is_given)
       continue;
     const auto [a, b] = ridge.ends;

@@ -55,14 +55,10 @@ private:
   std::vector<Index> stamp_;
   std::vector<Index> ring_;
 
-  [[nodiscard]] const Vector<3> &point(Index v) const {
-    return points_[static_cast<std::size_t>(v)];
-  }
-  [[nodiscard]] const Vector<3> &at(Index jet) const {
-    return point(out_.vertex[static_cast<std::size_t>(jet)]);
-  }
+  [[nodiscard]] const Vector<3> &point(Index v) const { return points_[v]; }
+  [[nodiscard]] const Vector<3> &at(Index jet) const { return point(out_.vertex[jet]); }
   [[nodiscard]] std::span<const Index> facets_of(Index jet) const {
-    const auto s = static_cast<std::size_t>(jet);
+    const std::size_t s = jet;
     return {facets_at_.data() + first_[s],
             static_cast<std::size_t>(first_[s + 1] - first_[s])};
   }
@@ -74,30 +70,30 @@ private:
     first_.assign(features.n_sides + 1, 0);
     for (const Facet<3> &sides : features.facet_sides)
       for (Index side : sides)
-        ++first_[static_cast<std::size_t>(side) + 1];
+        ++first_[side + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     facets_at_.resize(3 * facets_.size());
     std::vector<Index> next(first_.begin(), first_.end() - 1);
     for (std::size_t f = 0; f < facets_.size(); ++f)
       for (std::size_t i = 0; i < 3; ++i) {
-        const auto side = static_cast<std::size_t>(features.facet_sides[f][i]);
+        const std::size_t side = features.facet_sides[f][i];
         out_.vertex[side] = facets_[f][i];
-        facets_at_[static_cast<std::size_t>(next[side]++)] = static_cast<Index>(f);
+        facets_at_[next[side]++] = static_cast<Index>(f);
       }
   }
 
   [[nodiscard]] Vector<3> facet_normal(Index f) const {
-    const Facet<3> &t = facets_[static_cast<std::size_t>(f)];
+    const Facet<3> &t = facets_[f];
     return (point(t[1]) - point(t[0])).cross(point(t[2]) - point(t[0]));
   }
 
   /// Exact at the vertices of a polyhedron inscribed in a sphere (Max, Weights for
   /// computing vertex normals from facet normals, 1999). Facets may be oriented anyhow.
   [[nodiscard]] Vector<3> weighted_normal(Index jet) const {
-    const Index v = out_.vertex[static_cast<std::size_t>(jet)];
+    const Index v = out_.vertex[jet];
     Vector<3> sum = Vector<3>::Zero();
     for (Index f : facets_of(jet)) {
-      const Facet<3> &t = facets_[static_cast<std::size_t>(f)];
+      const Facet<3> &t = facets_[f];
       const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
       const Vector<3> a = point(t[(k + 1) % 3]) - point(v);
       const Vector<3> b = point(t[(k + 2) % 3]) - point(v);
@@ -111,9 +107,9 @@ private:
   /// Around the end of a ridge that may be the jet of the other side, which says
   /// nothing.
   void gather(Index jet, const Vector<3> &normal) {
-    const Index v = out_.vertex[static_cast<std::size_t>(jet)];
+    const Index v = out_.vertex[jet];
     ring_.assign(1, jet);
-    stamp_[static_cast<std::size_t>(jet)] = jet;
+    stamp_[jet] = jet;
     std::size_t begin = 0;
     for (int ring = 0; ring < max_rings && ring_.size() <= enough_points; ++ring) {
       const std::size_t end = ring_.size();
@@ -122,9 +118,8 @@ private:
           const Vector<3> m = facet_normal(f);
           if (std::abs(m.dot(normal)) < most_turned * m.norm())
             continue;
-          for (Index other : out_.facet_jets[static_cast<std::size_t>(f)])
-            if (std::exchange(stamp_[static_cast<std::size_t>(other)], jet) != jet &&
-                out_.vertex[static_cast<std::size_t>(other)] != v)
+          for (Index other : out_.facet_jets[f])
+            if (std::exchange(stamp_[other], jet) != jet && out_.vertex[other] != v)
               ring_.push_back(other);
         }
     }
@@ -137,9 +132,9 @@ private:
     bool is_settled = false;
     for (int round = 0; round < max_fits; ++round) {
       gather(jet, out.normal);
-      stamp_[static_cast<std::size_t>(jet)] = none;
+      stamp_[jet] = none;
       for (Index other : ring_)
-        stamp_[static_cast<std::size_t>(other)] = none;
+        stamp_[other] = none;
       if (ring_.size() <= for_quadratic)
         return out;
       const double reach = reach_from(jet);

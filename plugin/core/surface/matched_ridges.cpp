@@ -25,11 +25,9 @@ std::vector<double> shortest_edges(std::span<const Vector<3>> points,
                                    std::span<const Edge> others) {
   std::vector<double> shortest(points.size(), std::numeric_limits<double>::infinity());
   const auto consider = [&](const Edge &ends) {
-    const double length = (points[static_cast<std::size_t>(ends[1])] -
-                           points[static_cast<std::size_t>(ends[0])])
-                              .norm();
+    const double length = (points[ends[1]] - points[ends[0]]).norm();
     for (Index v : ends) {
-      double &here = shortest[static_cast<std::size_t>(v)];
+      double &here = shortest[v];
       here = std::min(here, length);
     }
   };
@@ -111,10 +109,10 @@ FeatureSet strange_curves(const std::vector<Step> &steps, const EdgeTable &edges
   FeatureSet is_strange(n_curves);
   std::fill(is_strange.begin(), is_strange.end(), std::uint8_t{1});
   for (const Step &step : steps)
-    is_strange[static_cast<std::size_t>(step.curve)] = 0;
+    is_strange[step.curve] = 0;
   for (const Step &step : steps)
     if (!edges.contains(step.ends))
-      is_strange[static_cast<std::size_t>(step.curve)] = 1;
+      is_strange[step.curve] = 1;
   return is_strange;
 }
 
@@ -131,14 +129,13 @@ std::vector<bool> matched_ridges(const SmoothSurface &geometry,
   const FeatureSet is_strange = strange_curves(steps, edges, geometry.n_curves());
   std::vector<bool> is_ridge(folds.size(), false);
   for (const Step &step : steps)
-    if (is_strange[static_cast<std::size_t>(step.curve)] == 0)
+    if (is_strange[step.curve] == 0)
       if (const auto k = edges.fold(step.ends))
         is_ridge[*k] = true;
   for (std::size_t k = 0; k < folds.size(); ++k) {
     if (is_ridge[k] || !is_sharp[k])
       continue;
-    const Vector<3> &x = points[static_cast<std::size_t>(folds[k].ends[0])],
-                    &y = points[static_cast<std::size_t>(folds[k].ends[1])];
+    const Vector<3> &x = points[folds[k].ends[0]], &y = points[folds[k].ends[1]];
     is_ridge[k] = geometry.distance_to_ridges(.5 * (x + y), is_strange) <=
                   farthest_ridge * (y - x).norm();
   }

@@ -9,9 +9,7 @@ RidgeChains::RidgeChains(std::span<const RidgeSegment> segments,
   for (std::size_t k = 0; k < segments.size(); ++k)
     for (Index v : segments[k].ends)
       at_point[v].push_back(k);
-  const auto is_corner = [&](Index v) {
-    return dimension[static_cast<std::size_t>(v)] != 1;
-  };
+  const auto is_corner = [&](Index v) { return dimension[v] != 1; };
   const auto trace = [&](std::size_t k, Index from) {
     const Index curve = segments[k].curve, first = from;
     double position = 0;
@@ -42,7 +40,7 @@ RidgeChains::RidgeChains(std::span<const RidgeSegment> segments,
 }
 
 std::vector<RidgeChains::Place> RidgeChains::places(Index segment, double part) const {
-  const Link &link = links_[static_cast<std::size_t>(segment)];
+  const Link &link = links_[segment];
   if (part == 0 || part == 1) {
     const auto corner =
         at_corner_.find((part == 0) != link.is_reversed ? link.from : link.to);

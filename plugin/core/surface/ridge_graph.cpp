@@ -10,18 +10,18 @@ void RidgeGraph::add(Index a, Index b, Index curve) {
     e = free_.back();
     free_.pop_back();
   }
-  Index &head_a = first_[static_cast<std::size_t>(a)];
-  Index &head_b = first_[static_cast<std::size_t>(b)];
-  edges_[static_cast<std::size_t>(e)] = {{a, b}, curve, {head_a, head_b}};
+  Index &head_a = first_[a];
+  Index &head_b = first_[b];
+  edges_[e] = {{a, b}, curve, {head_a, head_b}};
   head_a = head_b = e;
 }
 
 void RidgeGraph::unlink(Index edge, Index v) {
   const auto next_of = [&](Index e) -> Index & {
-    RidgeEdge &link = edges_[static_cast<std::size_t>(e)];
+    RidgeEdge &link = edges_[e];
     return link.next[link.ends[0] == v ? 0 : 1];
   };
-  Index *link = &first_[static_cast<std::size_t>(v)];
+  Index *link = &first_[v];
   while (*link != edge)
     link = &next_of(*link);
   *link = next_of(edge);
@@ -31,7 +31,7 @@ void RidgeGraph::remove(Index edge) {
   const std::array<Index, 2> ends = at(edge).ends;
   unlink(edge, ends[0]);
   unlink(edge, ends[1]);
-  edges_[static_cast<std::size_t>(edge)] = {};
+  edges_[edge] = {};
   free_.push_back(edge);
 }
 
@@ -72,8 +72,7 @@ void RidgeGraph::renumber(const std::vector<Index> &rank, std::size_t n_vertices
   first_.assign(n_vertices, none);
   for (const RidgeEdge &edge : old)
     if (edge.ends[0] != none)
-      add(rank[static_cast<std::size_t>(edge.ends[0])],
-          rank[static_cast<std::size_t>(edge.ends[1])], edge.curve);
+      add(rank[edge.ends[0]], rank[edge.ends[1]], edge.curve);
 }
 
 } // namespace anistar

@@ -24,16 +24,14 @@ public:
   [[nodiscard]] Index find(Index a, Index b) const;
   /// Gives the edges at v to visit(edge, other end).
   template <class Visit> void around(Index v, Visit visit) const {
-    for (Index e = first_[static_cast<std::size_t>(v)]; e != none;) {
+    for (Index e = first_[v]; e != none;) {
       const RidgeEdge &edge = at(e);
       const std::size_t side = edge.ends[0] == v ? 0 : 1;
       visit(e, edge.ends[1 - side]);
       e = edge.next[side];
     }
   }
-  [[nodiscard]] const RidgeEdge &at(Index edge) const {
-    return edges_[static_cast<std::size_t>(edge)];
-  }
+  [[nodiscard]] const RidgeEdge &at(Index edge) const { return edges_[edge]; }
   [[nodiscard]] const std::vector<RidgeEdge> &edges() const { return edges_; }
   /// Replaces the edge ab by a-v and v-b.
   void split(Index a, Index b, Index v);

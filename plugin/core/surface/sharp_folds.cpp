@@ -62,9 +62,7 @@ private:
   std::vector<std::array<std::size_t, 3>> folds_of_; ///< a facet, the first n of them
   std::vector<std::size_t> n_folds_of_;
 
-  [[nodiscard]] const Vector<3> &point(Index v) const {
-    return in_.points[static_cast<std::size_t>(v)];
-  }
+  [[nodiscard]] const Vector<3> &point(Index v) const { return in_.points[v]; }
 
   void start_at(std::size_t k) {
     is_sharp_[k] = true;
@@ -77,11 +75,11 @@ private:
     for (std::size_t i = 0; i < weak.size(); ++i)
       for (std::size_t side : {0u, 1u}) {
         const auto &ends = folds_[weak[i]].ends;
-        for (std::size_t next : folds_at_[static_cast<std::size_t>(ends[side])]) {
+        for (std::size_t next : folds_at_[ends[side]]) {
           const auto j = std::lower_bound(weak.begin(), weak.end(), next);
           if (j != weak.end() && *j == next &&
               continues(next, ends[1 - side], ends[side]))
-            chains.join(i, static_cast<std::size_t>(j - weak.begin()));
+            chains.join(i, j - weak.begin());
         }
       }
     std::vector<std::size_t> length(weak.size(), 0);
@@ -102,13 +100,13 @@ private:
     n_folds_of_.assign(in_.facets.size(), 0);
     for (std::size_t k = 0; k < folds_.size(); ++k) {
       for (Index v : folds_[k].ends)
-        folds_at_[static_cast<std::size_t>(v)].push_back(k);
+        folds_at_[v].push_back(k);
       for (std::size_t f : folds_[k].facets)
         folds_of_[f][n_folds_of_[f]++] = k;
     }
     for (const auto &[a, b] : others_) {
-      others_at_[static_cast<std::size_t>(a)].push_back(b);
-      others_at_[static_cast<std::size_t>(b)].push_back(a);
+      others_at_[a].push_back(b);
+      others_at_[b].push_back(a);
     }
   }
 
@@ -122,7 +120,7 @@ private:
       if (goes_on(from, at) || !is_joined(end.fold, from))
         continue; // sharp folds by themselves, as a scan has many, lead nowhere
       std::size_t best = folds_.size();
-      for (std::size_t k : folds_at_[static_cast<std::size_t>(at)])
+      for (std::size_t k : folds_at_[at])
         if (is_straight_on(from, at, far_end(k, at)) && stands_out(k, standing_out) &&
             (best == folds_.size() || folds_[k].turn > folds_[best].turn))
           best = k;
@@ -135,8 +133,8 @@ private:
 
   /// Whether a fold meets another ridge at this end.
   [[nodiscard]] bool is_joined(std::size_t k, Index v) const {
-    const auto &here = folds_at_[static_cast<std::size_t>(v)];
-    return !others_at_[static_cast<std::size_t>(v)].empty() ||
+    const auto &here = folds_at_[v];
+    return !others_at_[v].empty() ||
            std::any_of(here.begin(), here.end(), [&](std::size_t other) {
              return other != k && is_sharp_[other];
            });
@@ -152,8 +150,8 @@ private:
 
   /// Whether a ridge that comes to a point leaves it again.
   [[nodiscard]] bool goes_on(Index from, Index at) const {
-    const auto &others = others_at_[static_cast<std::size_t>(at)];
-    const auto &here = folds_at_[static_cast<std::size_t>(at)];
+    const auto &others = others_at_[at];
+    const auto &here = folds_at_[at];
     return std::any_of(others.begin(), others.end(),
                        [&](Index to) { return is_straight_on(from, at, to); }) ||
            std::any_of(here.begin(), here.end(), [&](std::size_t k) {
@@ -169,7 +167,7 @@ private:
       return false;
     for (std::size_t side : {0u, 1u}) {
       const Index at = fold.ends[side], from = fold.ends[1 - side];
-      for (std::size_t near : folds_at_[static_cast<std::size_t>(at)])
+      for (std::size_t near : folds_at_[at])
         for (std::size_t f : folds_[near].facets)
           for (std::size_t n = 0; n < n_folds_of_[f]; ++n) {
             const std::size_t other = folds_of_[f][n];

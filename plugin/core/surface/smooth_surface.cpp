@@ -47,7 +47,7 @@ public:
       for (std::size_t k = 0; k < 2; ++k)
         beyond_[{ridge.ends[k], ridge.curve}].push_back(ridge.ends[1 - k]);
     for (auto it = beyond_.begin(); it != beyond_.end(); ++it)
-      if (features.dimension[static_cast<std::size_t>(it->first.first)] != 1)
+      if (features.dimension[it->first.first] != 1)
         it->second.resize(1, none); // corners have no tangent of their own
   }
 
@@ -66,9 +66,7 @@ private:
   std::span<const Vector<3>> points_;
   std::map<std::pair<Index, Index>, std::vector<Index>> beyond_;
 
-  [[nodiscard]] const Vector<3> &point(Index v) const {
-    return points_[static_cast<std::size_t>(v)];
-  }
+  [[nodiscard]] const Vector<3> &point(Index v) const { return points_[v]; }
 
   /// That of the circle through a and its two neighbours on the curve, towards b.
   [[nodiscard]] std::optional<Vector<3>> circle_tangent(Index a, Index b,
@@ -145,7 +143,7 @@ CurvedPieces::CurvedPieces(std::vector<CurvedPiece> pieces)
     : pieces_(std::move(pieces)), tree_(boxes_of(pieces_)) {}
 
 CurvedPieces::Nearest CurvedPieces::on_piece(const Vector<3> &x, Index k) const {
-  const CurvedPiece &piece = pieces_[static_cast<std::size_t>(k)];
+  const CurvedPiece &piece = pieces_[k];
   const std::array<double, 3> weights = nearest_on(x, piece.corners);
   return {k, weights, (piece.chordal(weights) - x).squaredNorm()};
 }
@@ -158,8 +156,8 @@ CurvedPieces::Nearest CurvedPieces::nearest(const Vector<3> &x, Index start,
   if (start != none)
     best = on_piece(x, start);
   tree_.nearest(x, best.distance, [&](Index item, double) {
-    const Index of = pieces_[static_cast<std::size_t>(item)].feature;
-    if (!among.empty() && among[static_cast<std::size_t>(of)] == 0)
+    const Index of = pieces_[item].feature;
+    if (!among.empty() && among[of] == 0)
       return best.distance;
     const Nearest here = on_piece(x, item);
     // of pieces that share the nearest point, the first: the same for any order
@@ -173,12 +171,12 @@ CurvedPieces::Nearest CurvedPieces::nearest(const Vector<3> &x, Index start,
 
 Index CurvedPieces::nearest_feature(const Vector<3> &x) const {
   const Nearest at = nearest(x, none, {});
-  return pieces_[static_cast<std::size_t>(at.piece)].feature;
+  return pieces_[at.piece].feature;
 }
 
 bool CurvedPieces::has_any(const FeatureSet &among) const {
   return std::any_of(pieces_.begin(), pieces_.end(), [&](const CurvedPiece &piece) {
-    return among[static_cast<std::size_t>(piece.feature)] != 0;
+    return among[piece.feature] != 0;
   });
 }
 
@@ -188,7 +186,7 @@ CurvedPieces::Approach CurvedPieces::approach(const Vector<3> &x,
   Nearest at;
   for (int round = 0; round < max_rounds; ++round) {
     at = nearest(x - shift, at.piece, among);
-    const CurvedPiece &piece = pieces_[static_cast<std::size_t>(at.piece)];
+    const CurvedPiece &piece = pieces_[at.piece];
     const Vector<3> found = piece.displacement(at.weights);
     const double change = (found - shift).squaredNorm();
     shift = found;
@@ -202,19 +200,19 @@ CurvedPieces::Approach CurvedPieces::approach(const Vector<3> &x,
 CurvedPieces::Foot CurvedPieces::project(const Vector<3> &x,
                                          const FeatureSet &among) const {
   const auto [at, shift] = approach(x, among);
-  const CurvedPiece &piece = pieces_[static_cast<std::size_t>(at.piece)];
+  const CurvedPiece &piece = pieces_[at.piece];
   return {piece.chordal(at.weights) + shift, piece.normal(at.weights)};
 }
 
 std::optional<CurvedPieces::Place> CurvedPieces::find(const Vector<3> &x,
                                                       double tolerance) const {
   const Nearest nearby = nearest(x, none, {});
-  const CurvedPiece &chord = pieces_[static_cast<std::size_t>(nearby.piece)];
+  const CurvedPiece &chord = pieces_[nearby.piece];
   if (std::sqrt(nearby.distance) >
       farthest_from_chord * (chord.corners[1] - chord.corners[0]).norm() + tolerance)
     return std::nullopt; // as nearly all points are
   const auto [at, shift] = approach(x, {});
-  const CurvedPiece &piece = pieces_[static_cast<std::size_t>(at.piece)];
+  const CurvedPiece &piece = pieces_[at.piece];
   if (!((piece.chordal(at.weights) + shift - x).norm() <= tolerance))
     return std::nullopt;
   return Place{at.piece, at.weights};
@@ -241,9 +239,7 @@ SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
   n_patches_ = features.patches.size();
   n_curves_ = features.curves.size();
   jets_ = fit_jets(geometry.points, geometry.facets, features);
-  const auto point = [&](Index v) -> const Vector<3> & {
-    return geometry.points[static_cast<std::size_t>(v)];
-  };
+  const auto point = [&](Index v) -> const Vector<3> & { return geometry.points[v]; };
   const RidgeTangents tangents(geometry.points, features);
   std::map<Index, std::vector<CurvedPiece>> surfaces, ridges;
   RidgeCurves curve_of;
@@ -256,7 +252,7 @@ SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
         control_offset(point(b) - point(a), tangents.at(a, b, ridge.curve));
     piece.offsets[1][0] =
         control_offset(point(a) - point(b), tangents.at(b, a, ridge.curve));
-    const SurfaceCurve &curve = features.curves[static_cast<std::size_t>(ridge.curve)];
+    const SurfaceCurve &curve = features.curves[ridge.curve];
     ridges[curve.is_given ? curve.tag : untagged].push_back(piece);
     if (!curve.is_given)
       untagged_segments.push_back(ridge);
@@ -273,7 +269,7 @@ SmoothSurface::SmoothSurface(const SurfaceInput &geometry) {
           const Vector<3> chord = point(t[j]) - point(t[i]);
           const auto ridge =
               curve_of.find({std::min(t[i], t[j]), std::max(t[i], t[j])});
-          const Jet &jet = jets_.jets[static_cast<std::size_t>(jets_.facet_jets[f][i])];
+          const Jet &jet = jets_.jets[jets_.facet_jets[f][i]];
           piece.offsets[i][j] = control_offset(
               chord, ridge != curve_of.end() ? tangents.at(t[i], t[j], ridge->second)
                                              : tangent_along(chord, jet.normal));

@@ -53,9 +53,7 @@ private:
   std::vector<Fold> folds_; ///< and ridges, until the sharp ones are chosen
   std::vector<std::vector<std::size_t>> at_point_; ///< ridges at a point
 
-  [[nodiscard]] const Vector<3> &point(Index v) const {
-    return in_.points[static_cast<std::size_t>(v)];
-  }
+  [[nodiscard]] const Vector<3> &point(Index v) const { return in_.points[v]; }
   [[nodiscard]] Vector<3> normal(std::size_t f) const {
     const Facet<3> &t = in_.facets[f];
     return (point(t[1]) - point(t[0])).cross(point(t[2]) - point(t[0]));
@@ -207,7 +205,7 @@ private:
     }
     for (Ridge &ridge : ridges_) {
       for (Index &patch : ridge.patches)
-        patch = out_.facet_patch[static_cast<std::size_t>(patch)];
+        patch = out_.facet_patch[patch];
       std::sort(ridge.patches.begin(), ridge.patches.end());
     }
   }
@@ -228,7 +226,7 @@ private:
     at_point_.resize(n);
     for (std::size_t r = 0; r < ridges_.size(); ++r)
       for (Index v : ridges_[r].ends)
-        at_point_[static_cast<std::size_t>(v)].push_back(r);
+        at_point_[v].push_back(r);
     classify_surface_points();
     for (std::size_t v = 0; v < n; ++v)
       if (!at_point_[v].empty())
@@ -236,11 +234,11 @@ private:
             out_.dimension[v] != 0 && is_smooth_ridge_point(static_cast<Index>(v)) ? 1
                                                                                    : 0;
     for (Index v : in_.corners)
-      out_.dimension[static_cast<std::size_t>(v)] = 0;
+      out_.dimension[v] = 0;
     for (std::size_t f = 0; f < in_.facets.size(); ++f)
-      if (out_.patches[static_cast<std::size_t>(out_.facet_patch[f])].is_frozen)
+      if (out_.patches[out_.facet_patch[f]].is_frozen)
         for (Index v : in_.facets[f])
-          out_.dimension[static_cast<std::size_t>(v)] = 0;
+          out_.dimension[v] = 0;
   }
 
   /// A point where sheets only touch is a corner.
@@ -248,7 +246,7 @@ private:
     std::vector<std::vector<std::size_t>> facets(in_.points.size());
     for (std::size_t f = 0; f < in_.facets.size(); ++f)
       for (Index v : in_.facets[f])
-        facets[static_cast<std::size_t>(v)].push_back(f);
+        facets[v].push_back(f);
     for (std::size_t v = 0; v < facets.size(); ++v) {
       if (facets[v].empty())
         continue;
@@ -277,13 +275,13 @@ private:
   }
 
   [[nodiscard]] bool is_smooth_ridge_point(Index v) const {
-    const auto &here = at_point_[static_cast<std::size_t>(v)];
+    const auto &here = at_point_[v];
     if (here.size() != 2)
       return false;
     const Ridge &r = ridges_[here[0]], &s = ridges_[here[1]];
     if (r.tag != s.tag || r.is_given != s.is_given || r.patches != s.patches)
       return false;
-    if (r.patches.empty() && out_.dimension[static_cast<std::size_t>(v)] != 3)
+    if (r.patches.empty() && out_.dimension[v] != 3)
       return false; // a line inside the domain goes through a surface
     const auto leg = [&](const Ridge &ridge) -> Vector<3> {
       return point(ridge.ends[ridge.ends[0] == v ? 1 : 0]) - point(v);
@@ -301,14 +299,14 @@ private:
     out_.curves.resize(n);
     std::vector<std::vector<Index>> points(n);
     for (std::size_t r = 0; r < ridges_.size(); ++r) {
-      const auto c = static_cast<std::size_t>(curve_of[r]);
+      const std::size_t c = curve_of[r];
       out_.curves[c].tag = ridges_[r].tag;
       out_.curves[c].is_given = ridges_[r].is_given;
       out_.ridges.push_back({ridges_[r].ends, curve_of[r]});
       for (Index v : ridges_[r].ends) {
         points[c].push_back(v);
-        if (out_.dimension[static_cast<std::size_t>(v)] == 1)
-          out_.support[static_cast<std::size_t>(v)] = curve_of[r];
+        if (out_.dimension[v] == 1)
+          out_.support[v] = curve_of[r];
       }
     }
     for (std::size_t c = 0; c < n; ++c)

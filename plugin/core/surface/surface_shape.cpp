@@ -19,16 +19,14 @@ constexpr double least_share = .05;
 
 const FeatureSet &chosen(const std::vector<FeatureSet> &of, Index i) {
   static const FeatureSet everything;
-  return of.empty() ? everything : of[static_cast<std::size_t>(i)];
+  return of.empty() ? everything : of[i];
 }
 
 class Votes {
 public:
   Votes(std::size_t n, std::size_t n_candidates)
       : votes_(n, std::vector<double>(n_candidates, 0)) {}
-  void add(Index i, Index candidate, double weight) {
-    votes_[static_cast<std::size_t>(i)][static_cast<std::size_t>(candidate)] += weight;
-  }
+  void add(Index i, Index candidate, double weight) { votes_[i][candidate] += weight; }
   [[nodiscard]] std::vector<FeatureSet> winners() const {
     std::vector<FeatureSet> all(votes_.size());
     for (std::size_t i = 0; i < votes_.size(); ++i) {
@@ -62,9 +60,7 @@ SurfaceShape::SurfaceShape(std::vector<Patch> patches, std::vector<SurfaceCurve>
 void SurfaceShape::match(const SurfaceInput &input, const Features &features) {
   if (!geometry_)
     return;
-  const auto point = [&](Index v) -> const Vector<3> & {
-    return input.points[static_cast<std::size_t>(v)];
-  };
+  const auto point = [&](Index v) -> const Vector<3> & { return input.points[v]; };
   Votes patches(patches_.size(), geometry_->n_patches()),
       curves(curves_.size(), geometry_->n_curves());
   for (std::size_t f = 0; f < input.facets.size(); ++f) {
@@ -74,7 +70,7 @@ void SurfaceShape::match(const SurfaceInput &input, const Features &features) {
     if (patch(p).is_planar || !pieces)
       continue;
     for (Index v : t) // only vertices are on the geometry
-      if (features.dimension[static_cast<std::size_t>(v)] == 2)
+      if (features.dimension[v] == 2)
         patches.add(p, pieces->nearest_feature(point(v)), own_vote);
     const Vector<3> middle = (point(t[0]) + point(t[1]) + point(t[2])) / 3;
     patches.add(p, pieces->nearest_feature(middle), 1);
@@ -85,7 +81,7 @@ void SurfaceShape::match(const SurfaceInput &input, const Features &features) {
     if (here.is_straight || !pieces)
       continue;
     for (Index v : ridge.ends)
-      if (features.dimension[static_cast<std::size_t>(v)] == 1)
+      if (features.dimension[v] == 1)
         curves.add(ridge.curve, pieces->nearest_feature(point(v)), own_vote);
     const Vector<3> middle = .5 * (point(ridge.ends[0]) + point(ridge.ends[1]));
     curves.add(ridge.curve, pieces->nearest_feature(middle), 1);

@@ -30,17 +30,13 @@ public:
   SurfaceShape(std::vector<Patch> patches, std::vector<SurfaceCurve> curves,
                const SurfaceInput &geometry, SurfaceProjection projection);
 
-  [[nodiscard]] const Patch &patch(Index p) const {
-    return patches_[static_cast<std::size_t>(p)];
-  }
-  [[nodiscard]] const SurfaceCurve &curve(Index c) const {
-    return curves_[static_cast<std::size_t>(c)];
-  }
+  [[nodiscard]] const Patch &patch(Index p) const { return patches_[p]; }
+  [[nodiscard]] const SurfaceCurve &curve(Index c) const { return curves_[c]; }
   /// Finds which patches and curves of the geometry those of the mesh are, so that
   /// sheets with the same tag that come near each other are not mistaken.
   void match(const SurfaceInput &input, const Features &features);
   [[nodiscard]] bool is_curved() const { return geometry_ != nullptr; }
-  void freeze(Index c) { curves_[static_cast<std::size_t>(c)].is_frozen = true; }
+  void freeze(Index c) { curves_[c].is_frozen = true; }
   [[nodiscard]] Vector<3> on_patch(Index p, const Vector<3> &x) const;
   /// The unit normal of the surface near x, on the side of `like`; `like` itself where
   /// the geometry tells none.

@@ -55,7 +55,7 @@ std::array<Vector<d>, d> facet_points(const Simplex<d> &s, std::size_t i) {
   const Facet<d> facet = facet_of<d>(local, i);
   std::array<Vector<d>, d> points;
   for (std::size_t k = 0; k < d; ++k)
-    points[k] = s[static_cast<std::size_t>(facet[k])];
+    points[k] = s[facet[k]];
   return points;
 }
 

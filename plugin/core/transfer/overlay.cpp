@@ -88,7 +88,7 @@ void Overlay<d>::advance(const Simplex<d> &target, const Box<d> &box, double vol
 template <std::size_t d>
 bool Overlay<d>::try_cell(const Simplex<d> &target, const Box<d> &box, double volume,
                           Index cell, bool spread) {
-  Index &seen = seen_[static_cast<std::size_t>(cell)];
+  Index &seen = seen_[cell];
   if (seen == visit_)
     return false;
   seen = visit_;
@@ -107,9 +107,8 @@ bool Overlay<d>::try_cell(const Simplex<d> &target, const Box<d> &box, double vo
   cover_.overlaps.push_back(overlap);
   if (spread)
     for (std::size_t j = 0; j <= d; ++j) {
-      const Index beyond =
-          source_->neighbours()[static_cast<std::size_t>(cell)][j].cell();
-      if (beyond != none && seen_[static_cast<std::size_t>(beyond)] != visit_ &&
+      const Index beyond = source_->neighbours()[cell][j].cell();
+      if (beyond != none && seen_[beyond] != visit_ &&
           *std::min_element(at[j].begin(), at[j].end()) < 0)
         front_.push_back(beyond);
     }

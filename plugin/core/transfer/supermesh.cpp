@@ -7,6 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace anistar {
 namespace {
@@ -34,42 +35,41 @@ public:
     std::vector<Index> rows;
     std::vector<std::size_t> starts{0};
     for (const RowEntry &entry : entries) {
-      Index &number = row_number_[static_cast<std::size_t>(entry.row)];
+      Index &number = row_number_[entry.row];
       if (number == none) {
         number = static_cast<Index>(rows.size());
         rows.push_back(entry.row);
         starts.push_back(0);
       }
-      ++starts[static_cast<std::size_t>(number) + 1];
+      ++starts[number + 1];
     }
     std::partial_sum(starts.begin(), starts.end(), starts.begin());
     std::vector<std::size_t> fill(starts.begin(), starts.end() - 1);
     std::vector<std::size_t> order(entries.size());
     for (std::size_t k = 0; k < entries.size(); ++k)
-      order[fill[static_cast<std::size_t>(
-          row_number_[static_cast<std::size_t>(entries[k].row)])]++] = k;
+      order[fill[row_number_[entries[k].row]]++] = k;
     out.starts.assign(1, 0);
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t k = starts[r]; k < starts[r + 1]; ++k)
         add(entries[order[k]].column, entries[order[k]].value);
       finish_row(out);
-      row_number_[static_cast<std::size_t>(rows[r])] = none;
+      row_number_[rows[r]] = none;
     }
     return rows;
   }
 
   void add(Index column, double value) {
-    Index &slot = slot_[static_cast<std::size_t>(column)];
+    Index &slot = slot_[column];
     if (slot == none) {
       slot = static_cast<Index>(row_.size());
       row_.emplace_back(column, 0.);
     }
-    row_[static_cast<std::size_t>(slot)].second += value;
+    row_[slot].second += value;
   }
 
   void finish_row(SparseRows &out) {
     for (const auto &[column, value] : row_)
-      slot_[static_cast<std::size_t>(column)] = none;
+      slot_[column] = none;
     std::sort(row_.begin(), row_.end());
     for (const auto &[column, value] : row_) {
       out.columns.push_back(column);
@@ -132,7 +132,7 @@ private:
   static std::vector<std::vector<Index>> by_region(const RegionMesh<d> &mesh) {
     std::vector<std::vector<Index>> cells;
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-      const auto region = static_cast<std::size_t>(mesh.regions[c]);
+      const std::size_t region = mesh.regions[c];
       if (region >= cells.size())
         cells.resize(region + 1);
       cells[region].push_back(static_cast<Index>(c));
@@ -145,14 +145,14 @@ private:
     std::vector<Cell<d>> cells;
     std::vector<Index> used;
     for (const Index c : sources) {
-      cells.push_back(source_.cells[static_cast<std::size_t>(c)]);
+      cells.push_back(source_.cells[c]);
       used.insert(used.end(), cells.back().begin(), cells.back().end());
     }
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
     std::vector<Vector<d>> points;
     for (const Index v : used)
-      points.push_back(source_.points[static_cast<std::size_t>(v)]);
+      points.push_back(source_.points[v]);
     for (Cell<d> &cell : cells)
       for (Index &v : cell)
         v = static_cast<Index>(std::lower_bound(used.begin(), used.end(), v) -
@@ -164,12 +164,12 @@ private:
     std::vector<Vector<d>> centroids;
     for (const Index c : targets) {
       centroids.push_back(Vector<d>::Zero());
-      for (const Index v : target_.cells[static_cast<std::size_t>(c)])
-        centroids.back() += target_.points[static_cast<std::size_t>(v)];
+      for (const Index v : target_.cells[c])
+        centroids.back() += target_.points[v];
     }
     std::vector<Index> ordered;
     for (const Index k : hilbert_order<d>(centroids))
-      ordered.push_back(targets[static_cast<std::size_t>(k)]);
+      ordered.push_back(targets[k]);
     return ordered;
   }
 
@@ -203,10 +203,10 @@ private:
     const std::size_t end = std::min(begin + chunk_size, region.targets.size());
     for (std::size_t k = begin; k < end; ++k) {
       const Index cell = region.targets[k];
-      const Cell<d> &corners = target_.cells[static_cast<std::size_t>(cell)];
+      const Cell<d> &corners = target_.cells[cell];
       Simplex<d> simplex;
       for (std::size_t i = 0; i <= d; ++i)
-        simplex[i] = target_.points[static_cast<std::size_t>(corners[i])];
+        simplex[i] = target_.points[corners[i]];
       const Cover<d> &cover = overlay.cover(simplex);
       record(region, cell, cover, out);
       add_loads(region, cell, cover);
@@ -228,7 +228,7 @@ private:
       const Overlap<d> &overlap = cover.overlaps[k];
       const bool is_fill = cover.filled && k + 1 == cover.overlaps.size();
       const auto sums = row_sums<d>(overlap.moments);
-      out.sources.push_back(region.sources[static_cast<std::size_t>(overlap.source)]);
+      out.sources.push_back(region.sources[overlap.source]);
       out.volumes.push_back(std::accumulate(sums.begin(), sums.end(), 0.));
       out.covered.push_back(is_fill ? 0 : overlap.volume);
       if (settings_.blocks)
@@ -238,10 +238,9 @@ private:
 
   void add_loads(const Region<d> &region, Index cell, const Cover<d> &cover) {
     const std::size_t width = settings_.n_columns;
-    double *load = loads_.data() + static_cast<std::size_t>(cell) * (d + 1) * width;
+    double *load = loads_.data() + cell * (d + 1) * width;
     for (const Overlap<d> &overlap : cover.overlaps) {
-      const auto source = static_cast<std::size_t>(
-          region.sources[static_cast<std::size_t>(overlap.source)]);
+      const std::size_t source = region.sources[overlap.source];
       const double *values = settings_.nodal.data() + source * (d + 1) * width;
       for (std::size_t i = 0; i <= d; ++i)
         for (std::size_t j = 0; j <= d; ++j)
@@ -259,8 +258,7 @@ private:
       row.columns.clear();
       row.values.clear();
       for (const Overlap<d> &overlap : cover.overlaps) {
-        const auto source = static_cast<std::size_t>(
-            region.sources[static_cast<std::size_t>(overlap.source)]);
+        const std::size_t source = region.sources[overlap.source];
         const Cell<d> &from = source_.cells[source];
         for (std::size_t j = 0; j <= d; ++j)
           compressor.add(from[j], overlap.moments[i][j]);
@@ -279,12 +277,12 @@ private:
     out.covered.assign(source_.cells.size(), 0);
     for (const Chunk<d> &chunk : chunks_) {
       for (std::size_t k = 0; k < chunk.targets.size(); ++k) {
-        const auto cell = static_cast<std::size_t>(chunk.targets[k]);
+        const std::size_t cell = chunk.targets[k];
         out.uncovered[cell] = chunk.uncovered[k];
         out.distance[cell] = chunk.distance[k];
       }
       for (std::size_t p = 0; p < chunk.sources.size(); ++p)
-        out.covered[static_cast<std::size_t>(chunk.sources[p])] += chunk.covered[p];
+        out.covered[chunk.sources[p]] += chunk.covered[p];
     }
     out.loads = std::move(loads_);
     gather_pairs(out);
@@ -298,17 +296,16 @@ private:
     starts.assign(target_.cells.size() + 1, 0);
     for (const Chunk<d> &chunk : chunks_)
       for (std::size_t k = 0; k < chunk.targets.size(); ++k)
-        starts[static_cast<std::size_t>(chunk.targets[k]) + 1] = chunk.n_pairs[k];
+        starts[chunk.targets[k] + 1] = chunk.n_pairs[k];
     std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    const auto n_pairs = static_cast<std::size_t>(starts.back());
+    const std::size_t n_pairs = starts.back();
     out.pairs.columns.resize(n_pairs);
     out.pairs.values.resize(n_pairs);
     out.blocks.resize(settings_.blocks ? n_pairs : 0);
     for (Chunk<d> &chunk : chunks_) {
       std::size_t p = 0;
       for (std::size_t k = 0; k < chunk.targets.size(); ++k) {
-        auto to = static_cast<std::size_t>(
-            starts[static_cast<std::size_t>(chunk.targets[k])]);
+        std::size_t to = starts[chunk.targets[k]];
         for (Index count = 0; count < chunk.n_pairs[k]; ++count, ++p, ++to) {
           out.pairs.columns[to] = chunk.sources[p];
           out.pairs.values[to] = chunk.volumes[p];
@@ -338,10 +335,10 @@ private:
     out.points.starts.assign(1, 0);
     std::size_t p = 0;
     for (std::size_t v = 0; v < target_.points.size(); ++v) {
-      for (; p < parts.size() && static_cast<std::size_t>(parts[p].row) == v; ++p) {
+      for (; p < parts.size() && std::cmp_equal(parts[p].row, v); ++p) {
         const SparseRows &rows = chunks_[parts[p].chunk].points;
-        const auto begin = static_cast<std::size_t>(rows.starts[parts[p].local]);
-        const auto end = static_cast<std::size_t>(rows.starts[parts[p].local + 1]);
+        const std::size_t begin = rows.starts[parts[p].local];
+        const std::size_t end = rows.starts[parts[p].local + 1];
         for (std::size_t k = begin; k < end; ++k)
           compressor.add(rows.columns[k], rows.values[k]);
       }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace anistar {
 namespace {
@@ -38,13 +39,13 @@ void check_rows(const SparseView &matrix) {
   const std::size_t n = matrix.starts.size() - 1;
   if (matrix.starts.empty() || matrix.starts[0] != 0 ||
       matrix.columns.size() != matrix.values.size() ||
-      static_cast<std::size_t>(matrix.starts[n]) != matrix.columns.size())
+      std::cmp_not_equal(matrix.starts[n], matrix.columns.size()))
     throw std::invalid_argument("the starts do not fit the entries of the matrix");
   for (std::size_t i = 0; i < n; ++i)
     if (matrix.starts[i] > matrix.starts[i + 1])
       throw std::invalid_argument("the starts decrease at row " + std::to_string(i));
   for (const Index column : matrix.columns)
-    if (column < 0 || static_cast<std::size_t>(column) >= n)
+    if (column < 0 || std::cmp_greater_equal(column, n))
       throw std::invalid_argument("column " + std::to_string(column) +
                                   " is out of range for " + std::to_string(n) +
                                   " rows");
@@ -60,7 +61,7 @@ SymmetricSystem::SymmetricSystem(const SparseView &matrix)
   scale_.assign(starts_.size() - 1, 0.);
   const auto row = [&](std::size_t i, auto visit) {
     for (auto k = starts_[i]; k < starts_[i + 1]; ++k)
-      visit(static_cast<std::size_t>(k), static_cast<std::size_t>(columns_[k]));
+      visit(k, columns_[k]);
   };
   for (std::size_t i = 0; i < size(); ++i) {
     row(i, [&](std::size_t k, std::size_t j) { scale_[i] += i == j ? values_[k] : 0; });
@@ -86,7 +87,7 @@ SymmetricSystem::Products SymmetricSystem::multiply(const std::vector<double> &x
   for (std::size_t i = 0; i < size(); ++i) {
     double sum = 0;
     for (auto k = starts_[i]; k < starts_[i + 1]; ++k)
-      sum += values_[k] * x[static_cast<std::size_t>(columns_[k])];
+      sum += values_[k] * x[columns_[k]];
     y[i] = sum;
     products.energy += x[i] * sum;
     products.square += sum * sum;

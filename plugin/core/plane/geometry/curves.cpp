@@ -58,12 +58,11 @@ public:
     std::vector<bool> on_facet(input.points.size(), false);
     for (const Facet<2> &facet : input.facets)
       for (Index v : facet)
-        on_facet[static_cast<std::size_t>(v)] = true;
+        on_facet[v] = true;
     for (std::size_t c = 0; c < input.cells.size(); ++c)
       for (std::size_t i = 0; i < 3; ++i) {
         const Facet<2> e = facet_of<2>(input.cells[c], i);
-        if (on_facet[static_cast<std::size_t>(e[0])] &&
-            on_facet[static_cast<std::size_t>(e[1])])
+        if (on_facet[e[0]] && on_facet[e[1]])
           left_[{e[0], e[1]}] = input.cell_tags[c];
       }
   }
@@ -96,8 +95,8 @@ using Incidence = std::vector<std::vector<std::pair<std::size_t, bool>>>;
 Incidence incidence(const std::vector<Link> &links, std::size_t n_points) {
   Incidence at(n_points);
   for (std::size_t k = 0; k < links.size(); ++k) {
-    at[static_cast<std::size_t>(links[k].from)].emplace_back(k, true);
-    at[static_cast<std::size_t>(links[k].to)].emplace_back(k, false);
+    at[links[k].from].emplace_back(k, true);
+    at[links[k].to].emplace_back(k, false);
   }
   return at;
 }
@@ -107,11 +106,9 @@ struct Chains {
   std::vector<Link> links = make_links(input);
   Incidence at = incidence(links, input.points.size());
 
-  [[nodiscard]] Vector<2> point(Index v) const {
-    return input.points[static_cast<std::size_t>(v)];
-  }
+  [[nodiscard]] Vector<2> point(Index v) const { return input.points[v]; }
   [[nodiscard]] Link outgoing(Index v, std::size_t n) const {
-    const auto [k, leaves] = at[static_cast<std::size_t>(v)][n];
+    const auto [k, leaves] = at[v][n];
     return leaves ? links[k] : links[k].reversed();
   }
   /// The turn of the chain at v, a vertex with two facets.
@@ -120,14 +117,14 @@ struct Chains {
     return turn(point(v) - point(in.from), point(out.to) - point(v));
   }
   [[nodiscard]] bool is_straight_at(Index v) const {
-    return at[static_cast<std::size_t>(v)].size() == 2 && turn_at(v) < straight_turn;
+    return at[v].size() == 2 && turn_at(v) < straight_turn;
   }
   /// The facet that leaves v along link n lies in a straight run.
   [[nodiscard]] bool in_straight_run(Index v, std::size_t n) const {
     return is_straight_at(v) || is_straight_at(outgoing(v, n).to);
   }
   [[nodiscard]] bool is_corner(Index v) const {
-    const auto &here = at[static_cast<std::size_t>(v)];
+    const auto &here = at[v];
     if (here.size() != 2)
       return !here.empty();
     if (!outgoing(v, 0).reversed().continues(outgoing(v, 1)))
@@ -143,8 +140,8 @@ struct Chains {
     for (std::size_t n : {0u, 1u})
       if (straight[1 - n]) { // a line meets a curve along link n
         const Index next = outgoing(v, n).to;
-        if (at[static_cast<std::size_t>(next)].size() != 2 ||
-            joins_straight_run(next) || angle > tangent_turn_factor * turn_at(next))
+        if (at[next].size() != 2 || joins_straight_run(next) ||
+            angle > tangent_turn_factor * turn_at(next))
           return true;
       }
     return stands_out(v, angle);
@@ -156,8 +153,7 @@ struct Chains {
       return false;
     for (std::size_t n : {0u, 1u}) {
       const Index next = outgoing(v, n).to;
-      if (at[static_cast<std::size_t>(next)].size() != 2 ||
-          angle < standing_out * turn_at(next))
+      if (at[next].size() != 2 || angle < standing_out * turn_at(next))
         return false;
     }
     return true;
@@ -222,7 +218,7 @@ void Curve::fit(std::vector<Vector<2>> points, const Projection *projection) {
 Vector<2> Curve::at(double t) const {
   const double last = static_cast<double>(n_segments());
   const double whole = std::clamp(std::floor(t), 0., last - 1);
-  const auto k = static_cast<std::size_t>(whole);
+  const std::size_t k = whole;
   const double s = t - whole;
   if (s == 0)
     return points_[k];
@@ -244,14 +240,14 @@ Vector<2> Curve::at(double t) const {
 Vector<2> Curve::on_polyline(double t) const {
   const double last = static_cast<double>(n_segments());
   const double whole = std::clamp(std::floor(t), 0., last - 1);
-  const auto k = static_cast<std::size_t>(whole);
+  const std::size_t k = whole;
   return points_[k] + (t - whole) * (points_[k + 1] - points_[k]);
 }
 
 Vector<2> Curve::derivative(double t) const {
   const double last = static_cast<double>(n_segments());
   const double whole = std::clamp(std::floor(t), 0., last - 1);
-  const auto k = static_cast<std::size_t>(whole);
+  const std::size_t k = whole;
   const double s = t - whole;
   const Vector<2> chord = points_[k + 1] - points_[k];
   if (is_straight_[k])
@@ -268,13 +264,13 @@ std::vector<FreePoint> free_points(const GeometryInput &input, const Chains &cha
   std::vector<FreePoint> found;
   for (std::size_t c = 0; c < input.cells.size(); ++c)
     for (Index v : input.cells[c])
-      region[static_cast<std::size_t>(v)] = input.cell_tags[c];
+      region[v] = input.cell_tags[c];
   std::vector<Index> corners(input.corners.begin(), input.corners.end());
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   for (Index v : corners)
-    if (chains.at[static_cast<std::size_t>(v)].empty())
-      found.push_back({v, region[static_cast<std::size_t>(v)]});
+    if (chains.at[v].empty())
+      found.push_back({v, region[v]});
   return found;
 }
 
@@ -286,7 +282,7 @@ Geometry make_geometry(const GeometryInput &input, const Projection *projection)
   geometry.points.assign(input.points.begin(), input.points.end());
   geometry.is_corner.assign(input.points.size(), false);
   for (Index v : input.corners)
-    geometry.is_corner.at(static_cast<std::size_t>(v)) = true;
+    geometry.is_corner.at(v) = true;
   for (std::size_t v = 0; v < input.points.size(); ++v)
     if (chains.is_corner(static_cast<Index>(v)))
       geometry.is_corner[v] = true;
@@ -302,12 +298,12 @@ Geometry make_geometry(const GeometryInput &input, const Projection *projection)
     curve.is_frozen = std::find(input.frozen_tags.begin(), input.frozen_tags.end(),
                                 link.tag) != input.frozen_tags.end();
     curve.vertices = {from};
-    curve.is_loop = !geometry.is_corner[static_cast<std::size_t>(from)];
-    std::size_t k = chains.at[static_cast<std::size_t>(from)][n].first;
+    curve.is_loop = !geometry.is_corner[from];
+    std::size_t k = chains.at[from][n].first;
     for (;;) {
       done[k] = true;
       curve.vertices.push_back(link.to);
-      const auto v = static_cast<std::size_t>(link.to);
+      const std::size_t v = link.to;
       if (geometry.is_corner[v] || link.to == from)
         break;
       const std::size_t other = chains.at[v][0].first == k ? 1 : 0;

@@ -42,9 +42,7 @@ FacetShapes facet_shapes(const GeometryInput &input) {
       const bool is_forward = forward != row.end();
       const std::size_t f = is_forward ? forward->second : row.at({b, a});
       if (curve.is_frozen || curve.is_straight(k)) {
-        out.measure[f] = (input.points[static_cast<std::size_t>(b)] -
-                          input.points[static_cast<std::size_t>(a)])
-                             .norm();
+        out.measure[f] = (input.points[b] - input.points[a]).norm();
         continue;
       }
       const auto [length, area] = measure_segment(curve, k, geometry.points.front());

@@ -15,7 +15,7 @@ constexpr int max_sample_depth = 24;
 double interpolated(const std::vector<double> &x, const std::vector<double> &y,
                     double at) {
   const auto above = std::upper_bound(x.begin() + 1, x.end() - 1, at);
-  const auto k = static_cast<std::size_t>(above - x.begin());
+  const std::size_t k = above - x.begin();
   const double width = x[k] - x[k - 1];
   const double r = width > 0 ? (at - x[k - 1]) / width : 0;
   return y[k - 1] + r * (y[k] - y[k - 1]);

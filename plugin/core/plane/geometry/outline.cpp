@@ -83,10 +83,9 @@ private:
     return static_cast<Index>(outline_.vertices.size()) - 1;
   }
   Index fixed(Index v) {
-    Index &known = vertex_of_[static_cast<std::size_t>(v)];
+    Index &known = vertex_of_[v];
     if (known == none)
-      known =
-          add(geometry_.points[static_cast<std::size_t>(v)], Triangulation<2>::corner);
+      known = add(geometry_.points[v], Triangulation<2>::corner);
     return known;
   }
 };
@@ -128,7 +127,7 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
     monitor.insist(maker.n_vertices());
   }
   Outline outline = maker.take();
-  outline.n_balls = static_cast<std::size_t>(protection.n_balls);
+  outline.n_balls = protection.n_balls;
   outline.n_unprotected = protection.given_up;
   return outline;
 }
@@ -151,7 +150,7 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
              const std::vector<Index> &edges, const std::function<void()> &look) {
   bool changed = false;
   const auto move = [&](Index v, const Vector<2> &x) {
-    const auto i = static_cast<std::size_t>(v);
+    const std::size_t i = v;
     changed = changed || outline.vertices[i].x != x;
     outline.vertices[i] = background.vertex(x, outline.background[i]);
   };
@@ -162,23 +161,23 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
   };
   for (Index e : edges) {
     look();
-    const CurveEdge edge = outline.edges[static_cast<std::size_t>(e)];
-    Curve &curve = geometry.curves[static_cast<std::size_t>(edge.curve)];
+    const CurveEdge edge = outline.edges[e];
+    Curve &curve = geometry.curves[edge.curve];
     const double first = std::floor(edge.t0) + 1, last = std::ceil(edge.t1) - 1;
     if (first <= last) {
       const double t = std::floor(.5 * (first + last));
-      Index cell = outline.background[static_cast<std::size_t>(edge.v0)];
+      Index cell = outline.background[edge.v0];
       outline.vertices.push_back(background.vertex(curve.at(t), cell));
       outline.background.push_back(cell);
       outline.feature.push_back(1);
       const auto v = static_cast<Index>(outline.vertices.size()) - 1;
-      outline.edges[static_cast<std::size_t>(e)] = {edge.curve, edge.t0, t, edge.v0, v};
+      outline.edges[e] = {edge.curve, edge.t0, t, edge.v0, v};
       outline.edges.push_back({edge.curve, t, edge.t1, v, edge.v1});
       give_up(edge.ball);
       changed = true;
     } else {
       const double segment = std::floor(edge.t0);
-      curve.straighten(static_cast<std::size_t>(segment));
+      curve.straighten(segment);
       for (const CurveEdge &other : outline.edges)
         if (other.curve == edge.curve)
           for (const auto &[v, t] :
@@ -208,9 +207,8 @@ std::vector<Index> edges_before(const Geometry &geometry, const Outline &outline
   std::vector<Vector<2>> lens;
   for (std::size_t e = 0; e < outline.edges.size(); ++e) {
     const CurveEdge &edge = outline.edges[e];
-    const Curve &curve = geometry.curves[static_cast<std::size_t>(edge.curve)];
-    lens = {outline.vertices[static_cast<std::size_t>(edge.v1)].x,
-            outline.vertices[static_cast<std::size_t>(edge.v0)].x,
+    const Curve &curve = geometry.curves[edge.curve];
+    lens = {outline.vertices[edge.v1].x, outline.vertices[edge.v0].x,
             curve.on_polyline(edge.t0)};
     for (double t = std::floor(edge.t0) + 1; t < edge.t1; ++t)
       lens.push_back(curve.on_polyline(t));
@@ -231,9 +229,7 @@ std::vector<Index> edges_before(const Geometry &geometry, const Outline &outline
 std::vector<Index> conflicts(const Outline &outline,
                              const std::function<void()> &look) {
   std::vector<Box<2>> boxes(outline.edges.size());
-  const auto x = [&](Index v) -> const Vector<2> & {
-    return outline.vertices[static_cast<std::size_t>(v)].x;
-  };
+  const auto x = [&](Index v) -> const Vector<2> & { return outline.vertices[v].x; };
   for (std::size_t e = 0; e < boxes.size(); ++e) {
     boxes[e].extend(x(outline.edges[e].v0));
     boxes[e].extend(x(outline.edges[e].v1));
@@ -245,8 +241,8 @@ std::vector<Index> conflicts(const Outline &outline,
     const CurveEdge &one = outline.edges[e];
     bool clashes = x(one.v0) == x(one.v1);
     tree.meeting(boxes[e], [&](Index item) {
-      const CurveEdge &two = outline.edges[static_cast<std::size_t>(item)];
-      if (static_cast<std::size_t>(item) == e)
+      const CurveEdge &two = outline.edges[item];
+      if (std::cmp_equal(item, e))
         return true;
       const bool common0 = one.v0 == two.v0 || one.v0 == two.v1;
       const bool common1 = one.v1 == two.v0 || one.v1 == two.v1;

@@ -212,8 +212,8 @@ std::vector<std::vector<Leg>> legs_at_points(const Geometry &geometry) {
     const Curve &curve = geometry.curves[c];
     if (curve.is_loop)
       continue;
-    legs[static_cast<std::size_t>(curve.vertices.front())].push_back({c, true});
-    legs[static_cast<std::size_t>(curve.vertices.back())].push_back({c, false});
+    legs[curve.vertices.front()].push_back({c, true});
+    legs[curve.vertices.back()].push_back({c, false});
   }
   return legs;
 }

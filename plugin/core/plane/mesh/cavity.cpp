@@ -28,7 +28,7 @@ template <std::size_t d> void Cavity<d>::clear() {
 }
 
 template <std::size_t d> void Cavity<d>::add(Index cell) {
-  const auto c = static_cast<std::size_t>(cell);
+  const std::size_t c = cell;
   if (c >= stamp_.size())
     stamp_.resize(std::max(mesh_.cells.size(), c + 1), 0);
   if (stamp_[c] == epoch_)
@@ -87,7 +87,7 @@ template <std::size_t d>
 void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
   const auto outer_of = [&](HalfFacet h) {
     return Outer{mesh_.at(h.cell()), h.facet(), mesh_.opposite(h), mesh_.constraint(h),
-                 mesh_.region[static_cast<std::size_t>(h.cell())]};
+                 mesh_.region[h.cell()]};
   };
   outers_.clear();
   walls_.clear();
@@ -106,15 +106,15 @@ void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
     const Index c = k < cells_.size() ? cells_[k] : mesh_.add_cell(slots_);
     mesh_.at(c) = outer.cell;
     mesh_.at(c)[outer.facet] = apex;
-    mesh_.region[static_cast<std::size_t>(c)] = outer.region;
-    mesh_.neighbours[static_cast<std::size_t>(c)] = {};
-    mesh_.constraints[static_cast<std::size_t>(c)].fill(none);
+    mesh_.region[c] = outer.region;
+    mesh_.neighbours[c] = {};
+    mesh_.constraints[c].fill(none);
     const HalfFacet base(c, outer.facet);
     mesh_.join(base, outer.beyond);
     mesh_.set_constraint(base, outer.constraint);
     star_.push_back(base);
     for (Index v : mesh_.at(c))
-      mesh_.vertex_cell[static_cast<std::size_t>(v)] = c;
+      mesh_.vertex_cell[v] = c;
   }
   for (HalfFacet base : star_)
     for (std::size_t j = 0; j <= d; ++j)

@@ -31,8 +31,7 @@ public:
   void clear();
   void add(Index cell);
   [[nodiscard]] bool contains(Index cell) const {
-    return static_cast<std::size_t>(cell) < stamp_.size() &&
-           stamp_[static_cast<std::size_t>(cell)] == epoch_;
+    return std::cmp_less(cell, stamp_.size()) && stamp_[cell] == epoch_;
   }
   [[nodiscard]] std::span<const Index> cells() const { return cells_; }
 

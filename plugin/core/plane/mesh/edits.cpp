@@ -118,7 +118,7 @@ Index split_edge(Workspace &w, HalfFacet edge) {
     return none;
   if (!grow_to_see(mesh, w.cavity, none, skipped, x))
     return none;
-  Index cell = mesh.background_cell[static_cast<std::size_t>(a)];
+  Index cell = mesh.background_cell[a];
   const Vertex<2> vertex = w.background.vertex(x, cell);
   const Index feature = is_constrained ? 1 : Triangulation<2>::interior;
   const Index v = mesh.add_vertex(vertex, feature, cell);
@@ -141,7 +141,7 @@ Index split_edge(Workspace &w, HalfFacet edge) {
 bool bound_collapse(Workspace &w, Collapse &collapse) {
   Triangulation<2> &mesh = w.mesh;
   const Index v = collapse.vertex;
-  const Index dimension = mesh.feature[static_cast<std::size_t>(v)];
+  const Index dimension = mesh.feature[v];
   if (dimension == Triangulation<2>::corner)
     return false;
   collapse.skipped.clear();
@@ -193,7 +193,7 @@ void fill_collapse(Workspace &w, Collapse &collapse) {
       w.walls.remove(gone);
   }
   w.cavity.fill(collapse.target, collapse.ridges);
-  w.mesh.vertex_cell[static_cast<std::size_t>(collapse.vertex)] = none;
+  w.mesh.vertex_cell[collapse.vertex] = none;
 }
 
 void renumber(Workspace &w, int threads, double shift) {
@@ -201,7 +201,7 @@ void renumber(Workspace &w, int threads, double shift) {
   for (CurveEdge &edge : w.on_curves.curve_edges)
     for (Index *v : {&edge.v0, &edge.v1})
       if (*v != none) // an entry that a collapse left behind has lost its vertex
-        *v = rank[static_cast<std::size_t>(*v)];
+        *v = rank[*v];
 }
 
 } // namespace anistar

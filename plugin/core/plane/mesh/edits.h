@@ -20,10 +20,10 @@ struct Workspace {
   Walls walls{mesh, on_curves.curve_edges, geometry};
 
   [[nodiscard]] const CurveEdge &curve_edge(HalfFacet h) const {
-    return on_curves.curve_edges[static_cast<std::size_t>(mesh.constraint(h))];
+    return on_curves.curve_edges[mesh.constraint(h)];
   }
   [[nodiscard]] const Curve &curve(const CurveEdge &edge) const {
-    return geometry.curves[static_cast<std::size_t>(edge.curve)];
+    return geometry.curves[edge.curve];
   }
   [[nodiscard]] double length(HalfFacet edge) const {
     const auto [a, b] = mesh.facet(edge);

@@ -49,9 +49,7 @@ private:
   Index in_ = none, out_ = none; ///< entries of the table of curve edges
 
   [[nodiscard]] bool is_clear(const Vector<2> &x) const;
-  [[nodiscard]] CurveEdge &edge(Index k) const {
-    return w_.on_curves.curve_edges[static_cast<std::size_t>(k)];
-  }
+  [[nodiscard]] CurveEdge &edge(Index k) const { return w_.on_curves.curve_edges[k]; }
 };
 
 } // namespace anistar

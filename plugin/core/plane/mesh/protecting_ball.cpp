@@ -15,7 +15,7 @@ ProtectingBall::ProtectingBall(Workspace &w) : w_(w) {
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (edges[e].ball == none)
       continue;
-    const auto ball = static_cast<std::size_t>(edges[e].ball);
+    const std::size_t ball = edges[e].ball;
     entries_.resize(std::max(entries_.size(), ball + 1));
     entries_[ball].push_back(static_cast<Index>(e));
   }
@@ -30,10 +30,10 @@ bool ProtectingBall::gather(Index v) {
   const Index ball = on.in().ball != none ? on.in().ball : on.out().ball;
   shell_.clear();
   legs_.clear();
-  for (Index e : entries_[static_cast<std::size_t>(ball)]) {
-    const CurveEdge &edge = w_.on_curves.curve_edges[static_cast<std::size_t>(e)];
+  for (Index e : entries_[ball]) {
+    const CurveEdge &edge = w_.on_curves.curve_edges[e];
     const auto stays = [&](Index u) {
-      return w_.mesh.feature[static_cast<std::size_t>(u)] == Triangulation<2>::corner;
+      return w_.mesh.feature[u] == Triangulation<2>::corner;
     };
     if (stays(edge.v0) && stays(edge.v1))
       return false;

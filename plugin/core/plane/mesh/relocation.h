@@ -62,14 +62,14 @@ public:
   }
 
   [[nodiscard]] Place here() const {
-    return {mesh_.vertex(v_), mesh_.background_cell[static_cast<std::size_t>(v_)]};
+    return {mesh_.vertex(v_), mesh_.background_cell[v_]};
   }
   void put(const Place &place) {
     mesh_.vertex(v_) = place.vertex;
-    mesh_.background_cell[static_cast<std::size_t>(v_)] = place.background;
+    mesh_.background_cell[v_] = place.background;
   }
   [[nodiscard]] Place at(const Vector<2> &x) const {
-    Place out{{}, mesh_.background_cell[static_cast<std::size_t>(v_)]};
+    Place out{{}, mesh_.background_cell[v_]};
     out.vertex = w_.background.vertex(x, out.background);
     return out;
   }

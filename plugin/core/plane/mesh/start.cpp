@@ -61,14 +61,13 @@ Cdt insert_outline(const Outline &outline, const std::function<void()> &look) {
   insert_points(cdt, points, look);
   std::vector<Cdt::Vertex_handle> handle(points.size());
   for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v)
-    handle[static_cast<std::size_t>(v->info())] = v;
+    handle[v->info()] = v;
   for (std::size_t v = 0; v < handle.size(); ++v)
     if (handle[v] == nullptr)
       throw MeshingError("two points of the geometry coincide", outline.vertices[v].x);
   for (const CurveEdge &edge : outline.edges) {
     look();
-    cdt.insert_constraint(handle[static_cast<std::size_t>(edge.v0)],
-                          handle[static_cast<std::size_t>(edge.v1)]);
+    cdt.insert_constraint(handle[edge.v0], handle[edge.v1]);
   }
   return cdt;
 }
@@ -116,8 +115,8 @@ std::vector<Component> components(Cdt &cdt, const Outline &outline,
         const Index a = face->vertex(Cdt::ccw(i))->info(),
                     b = face->vertex(Cdt::cw(i))->info();
         const Index e = edge_of.at({std::min(a, b), std::max(a, b)});
-        const CurveEdge &edge = outline.edges[static_cast<std::size_t>(e)];
-        const Curve &curve = geometry.curves[static_cast<std::size_t>(edge.curve)];
+        const CurveEdge &edge = outline.edges[e];
+        const Curve &curve = geometry.curves[edge.curve];
         claim(edge.v0 == a ? curve.left : curve.right);
         part.walls.push_back(e);
       }
@@ -140,15 +139,14 @@ MeshOnCurves extract(const Outline &outline, const std::vector<Component> &parts
       for (const Cdt::Face_handle &face : part.faces) {
         const Index c = mesh.add_cell();
         for (int i = 0; i < 3; ++i)
-          mesh.at(c)[static_cast<std::size_t>(i)] = face->vertex(i)->info();
-        mesh.region[static_cast<std::size_t>(c)] = *part.region;
-        mesh.constraints[static_cast<std::size_t>(c)].fill(none);
+          mesh.at(c)[i] = face->vertex(i)->info();
+        mesh.region[c] = *part.region;
+        mesh.constraints[c].fill(none);
       }
   mesh.neighbours = adjacency<2>(mesh.cells, mesh.vertices.size());
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (std::size_t i = 0; i < 3; ++i) {
-      mesh.vertex_cell[static_cast<std::size_t>(mesh.cells[c][i])] =
-          static_cast<Index>(c);
+      mesh.vertex_cell[mesh.cells[c][i]] = static_cast<Index>(c);
       const Facet<2> e = facet_of<2>(mesh.cells[c], i);
       const auto found = edge_of.find({std::min(e[0], e[1]), std::max(e[0], e[1])});
       if (found != edge_of.end())
@@ -159,8 +157,8 @@ MeshOnCurves extract(const Outline &outline, const std::vector<Component> &parts
 
 /// Where an edge begins, for a message.
 Vector<2> place_of(const Outline &outline, Index e) {
-  const CurveEdge &edge = outline.edges[static_cast<std::size_t>(e)];
-  return outline.vertices[static_cast<std::size_t>(edge.v0)].x;
+  const CurveEdge &edge = outline.edges[e];
+  return outline.vertices[edge.v0].x;
 }
 
 void resolve_conflicts(Geometry &geometry, const Background<2> &background,
@@ -192,10 +190,10 @@ std::vector<Index> misplaced(const Cdt &cdt, const std::vector<Component> &parts
     const auto free = wanted.find(v->info());
     if (free == wanted.end())
       continue;
-    const Component &part = parts[static_cast<std::size_t>(v->face()->info())];
+    const Component &part = parts[v->face()->info()];
     if (part.region.value_or(no_region) == free->second)
       continue;
-    const auto &x = outline.vertices[static_cast<std::size_t>(v->info())].x;
+    const auto &x = outline.vertices[v->info()].x;
     const std::vector<Index> before = edges_before(geometry, outline, x);
     const std::vector<Index> &blamed = before.empty() ? part.walls : before;
     found.insert(found.end(), blamed.begin(), blamed.end());

@@ -41,7 +41,7 @@ std::vector<Box<2>> Walls::collect(const Geometry &geometry) {
   std::vector<Box<2>> boxes;
   place_.assign(edges_.size(), none);
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    if (!geometry.curves[static_cast<std::size_t>(edges_[e].curve)].is_boundary())
+    if (!geometry.curves[edges_[e].curve].is_boundary())
       continue;
     place_[e] = static_cast<Index>(boxes.size());
     entries_.push_back({static_cast<Index>(e)});
@@ -70,8 +70,8 @@ bool Walls::is_clear(const Curve &curve, const Vector<2> &a, Index a_index,
   const auto blocks = [&](Index entry) {
     if (std::find(replaced.begin(), replaced.end(), entry) != replaced.end())
       return false;
-    const Index v0 = edges_[static_cast<std::size_t>(entry)].v0;
-    const Index v1 = edges_[static_cast<std::size_t>(entry)].v1;
+    const Index v0 = edges_[entry].v0;
+    const Index v1 = edges_[entry].v1;
     const bool has0 = v0 == corner[0] || v1 == corner[0];
     const bool has1 = v0 == corner[1] || v1 == corner[1];
     if (has0 && has1)
@@ -83,7 +83,7 @@ bool Walls::is_clear(const Curve &curve, const Vector<2> &a, Index a_index,
     return meets(swept, this->x(v0), this->x(v1));
   };
   tree_.meeting(box, [&](Index k) {
-    const auto &here = entries_[static_cast<std::size_t>(k)];
+    const auto &here = entries_[k];
     clear = std::none_of(here.begin(), here.end(), blocks);
     return clear;
   });
@@ -95,16 +95,16 @@ void Walls::add(Index now, Index before) {
   if (k == none)
     return;
   place_.resize(std::max(place_.size(), static_cast<std::size_t>(now) + 1), none);
-  place_[static_cast<std::size_t>(now)] = k;
-  entries_[static_cast<std::size_t>(k)].push_back(now);
-  const CurveEdge &edge = edges_[static_cast<std::size_t>(now)];
+  place_[now] = k;
+  entries_[k].push_back(now);
+  const CurveEdge &edge = edges_[now];
   extend(now, x(edge.v0));
   extend(now, x(edge.v1));
 }
 
 void Walls::remove(Index gone) {
   if (place(gone) != none)
-    std::erase(entries_[static_cast<std::size_t>(place(gone))], gone);
+    std::erase(entries_[place(gone)], gone);
 }
 
 void Walls::extend(Index entry, const Vector<2> &x) {

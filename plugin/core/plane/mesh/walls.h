@@ -46,7 +46,7 @@ private:
   BoxTree<2> tree_;
 
   [[nodiscard]] Index place(Index entry) const {
-    const auto e = static_cast<std::size_t>(entry);
+    const std::size_t e = entry;
     return e < place_.size() ? place_[e] : none;
   }
   [[nodiscard]] std::vector<Box<2>> collect(const Geometry &geometry);

@@ -55,8 +55,7 @@ private:
   /// Edges across a protecting ball are not split: the ball becomes smaller instead.
   bool shrink_ball(HalfFacet leg) {
     const CurveEdge &edge = w_.curve_edge(leg);
-    const bool begins =
-        mesh_.feature[static_cast<std::size_t>(edge.v0)] == Triangulation<2>::corner;
+    const bool begins = mesh_.feature[edge.v0] == Triangulation<2>::corner;
     if (!ball_)
       ball_.emplace(w_);
     if (!ball_->gather(begins ? edge.v1 : edge.v0) || !ball_->resize(ball_factor))
@@ -121,7 +120,7 @@ public:
 
 private:
   double best_ = 0;
-  std::size_t fewest_ = static_cast<std::size_t>(-1);
+  std::size_t fewest_ = std::numeric_limits<std::size_t>::max();
   int n_idle_ = 0;
 };
 

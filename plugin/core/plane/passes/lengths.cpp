@@ -113,7 +113,7 @@ LengthCounts control_lengths(Workspace &w, Legaliser &legaliser, Monitor &monito
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (Index v : ends)
     if (monitor.keep_going(0, 0) && w.mesh.is_used(v) &&
-        w.mesh.feature[static_cast<std::size_t>(v)] != Triangulation<2>::corner)
+        w.mesh.feature[v] != Triangulation<2>::corner)
       counts.collapses += control.collapse_short(v, shortest);
   std::vector<HalfFacet> edges = edges_of_length(w, threads, is_long);
   for (std::size_t k = 0;

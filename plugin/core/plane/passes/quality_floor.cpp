@@ -10,7 +10,7 @@ constexpr double steep_ratio = 2;
 
 bool is_between_walls(const Triangulation<2> &mesh, const Cell<2> &cell) {
   return std::all_of(cell.begin(), cell.end(), [&](Index v) {
-    return mesh.feature[static_cast<std::size_t>(v)] != Triangulation<2>::interior;
+    return mesh.feature[v] != Triangulation<2>::interior;
   });
 }
 

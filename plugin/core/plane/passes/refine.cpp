@@ -197,7 +197,7 @@ private:
   Offer offer(const Vector<2> &x, Index cell) {
     if (!range_.is_unbounded() && !is_inside(cell))
       return Offer::put_off;
-    Index hint = w_.mesh.background_cell[static_cast<std::size_t>(w_.mesh.at(cell)[0])];
+    Index hint = w_.mesh.background_cell[w_.mesh.at(cell)[0]];
     const Vertex<2> vertex = w_.background.vertex(x, hint);
     for (std::size_t i = 0; i < 3; ++i) {
       const HalfFacet edge(cell, i);
@@ -220,7 +220,7 @@ private:
 
   /// The cell and those across its edges are in the range.
   [[nodiscard]] bool is_inside(Index cell) const {
-    const Neighbours<2> &around = w_.mesh.neighbours[static_cast<std::size_t>(cell)];
+    const Neighbours<2> &around = w_.mesh.neighbours[cell];
     return range_.contains(w_.mesh.at(cell)) &&
            std::all_of(around.begin(), around.end(), [&](HalfFacet h) {
              return !h.exists() || range_.contains(w_.mesh.at(h.cell()));

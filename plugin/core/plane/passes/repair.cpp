@@ -126,7 +126,7 @@ private:
     if (!other.exists() || mesh_.constraint(edge) != none)
       return false;
     const auto [a, b] = mesh_.facet(edge);
-    Index hint = mesh_.background_cell[static_cast<std::size_t>(a)];
+    Index hint = mesh_.background_cell[a];
     const Vertex<2> middle =
         w_.background.vertex(.5 * (mesh_.vertex(a).x + mesh_.vertex(b).x), hint);
     w_.cavity.clear();
@@ -139,11 +139,11 @@ private:
   }
 
   bool move(Index v) {
-    if (mesh_.feature[static_cast<std::size_t>(v)] != Triangulation<2>::interior)
+    if (mesh_.feature[v] != Triangulation<2>::interior)
       return false;
     star_of(mesh_, v, star_);
     const Vertex<2> from = mesh_.vertex(v);
-    const Index from_cell = mesh_.background_cell[static_cast<std::size_t>(v)];
+    const Index from_cell = mesh_.background_cell[v];
     const Score before = score_of_star(from);
     // unit steps of the metric: M^(-1/2) applied to directions of a circle
     const SymmetricTensor<2> step =
@@ -171,7 +171,7 @@ private:
     if (!improves(best_score, before))
       return false;
     mesh_.vertex(v) = best;
-    mesh_.background_cell[static_cast<std::size_t>(v)] = best_cell;
+    mesh_.background_cell[v] = best_cell;
     return true;
   }
 

@@ -21,7 +21,7 @@ public:
   /// @returns false, without a change, when the star of v leaves the range.
   bool visit(Index v, const VertexRange &range) {
     Triangulation<2> &mesh = w_.mesh;
-    const Index feature = mesh.feature[static_cast<std::size_t>(v)];
+    const Index feature = mesh.feature[v];
     if (feature == Triangulation<2>::corner)
       return true;
     if (feature == 1 && !range.is_unbounded())
@@ -64,7 +64,7 @@ private:
   }
 
   void place(Index v, const Vector<2> &x) {
-    Index &cell = w_.mesh.background_cell[static_cast<std::size_t>(v)];
+    Index &cell = w_.mesh.background_cell[v];
     w_.mesh.vertex(v) = w_.background.vertex(x, cell);
   }
 

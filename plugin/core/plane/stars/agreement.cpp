@@ -19,14 +19,14 @@ public:
   explicit Worklist(std::size_t n_vertices) : is_in_(n_vertices, false) {}
 
   void add(Index v) {
-    if (!is_in_[static_cast<std::size_t>(v)]) {
-      is_in_[static_cast<std::size_t>(v)] = true;
+    if (!is_in_[v]) {
+      is_in_[v] = true;
       items_.push_back(v);
     }
   }
   [[nodiscard]] std::vector<Index> take() {
     for (Index v : items_)
-      is_in_[static_cast<std::size_t>(v)] = false;
+      is_in_[v] = false;
     return std::exchange(items_, {});
   }
   [[nodiscard]] std::size_t size() const { return items_.size(); }

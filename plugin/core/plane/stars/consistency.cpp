@@ -45,10 +45,10 @@ public:
       acting = item.rule;
       if (mesh_.at(item.cell) != item.vertices ||
           std::any_of(item.vertices.begin(), item.vertices.end(),
-                      [&](Index v) { return touched[static_cast<std::size_t>(v)]; }))
+                      [&](Index v) { return touched[v]; }))
         continue;
       for (Index v : item.vertices)
-        touched[static_cast<std::size_t>(v)] = true;
+        touched[v] = true;
       insert_for(item, round);
     }
     return mesh_.vertices.size() > before ? acting : Rule::kept;
@@ -86,7 +86,7 @@ private:
         wall = at.wall;
         continue;
       }
-      Index hint = mesh_.background_cell[static_cast<std::size_t>(item.star)];
+      Index hint = mesh_.background_cell[item.star];
       const Vertex<2> p = w_.background.vertex(x, hint);
       const HalfFacet near = encroached(p, at.cell);
       if (near.exists()) {

@@ -22,7 +22,7 @@ constexpr double least_gain = 1e-3;
 bool Relocator::enter(Index v, const VertexRange &range) {
   range_ = range;
   legaliser_.restrict_to(range);
-  if (mesh_.feature[static_cast<std::size_t>(v)] == 1 && !range.is_unbounded())
+  if (mesh_.feature[v] == 1 && !range.is_unbounded())
     return false;
   relocation_.gather(v);
   return range.is_unbounded() ||
@@ -53,7 +53,7 @@ bool Relocator::wander(Index v, int round, const VertexRange &range) {
 }
 
 bool Relocator::move(Index v, double radius, int pass) {
-  const Index feature = mesh_.feature[static_cast<std::size_t>(v)];
+  const Index feature = mesh_.feature[v];
   if (feature == Triangulation<2>::corner || relocation_.count_disagreeing() == 0)
     return false;
   CounterRandom random(seed_, static_cast<std::uint64_t>(v),
@@ -155,7 +155,7 @@ bool Relocator::resize_ball(Index v, CounterRandom &random, int least_drop) {
 }
 
 void Relocator::move_randomly(Index v, int round) {
-  const Index feature = mesh_.feature[static_cast<std::size_t>(v)];
+  const Index feature = mesh_.feature[v];
   if (feature == Triangulation<2>::corner)
     return;
   CounterRandom random(~seed_, static_cast<std::uint64_t>(v),

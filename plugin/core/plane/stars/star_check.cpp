@@ -20,8 +20,7 @@ public:
   /// its edges, such that fewer cells around fail. @returns whether it found a move.
   bool mend(Index cell, int round) {
     for (Index v : failures_.culprits(cell)) // none when an earlier move has mended it
-      if (mesh_.feature[static_cast<std::size_t>(v)] == Triangulation<2>::interior &&
-          move(v, round))
+      if (mesh_.feature[v] == Triangulation<2>::interior && move(v, round))
         return true;
     return false;
   }

@@ -96,7 +96,7 @@ bool CavityOperator::add_outer(HalfFacet h, double threshold) {
   Outer outer{mesh.facet(h),
               mesh.opposite(h),
               mesh.constraint(h),
-              mesh.region[static_cast<std::size_t>(h.cell())],
+              mesh.region[h.cell()],
               0,
               Kind::base,
               3,
@@ -147,13 +147,13 @@ bool CavityOperator::keeps_lengths(double longest) {
 }
 
 Index CavityOperator::local_index(Index v) {
-  if (static_cast<std::size_t>(v) >= local_of_.size())
+  if (std::cmp_greater_equal(v, local_of_.size()))
     local_of_.resize(volume_.mesh.vertices.size() + 1024, 0);
   if (volume_.mark_vertex(v)) {
-    local_of_[static_cast<std::size_t>(v)] = static_cast<Index>(local_.size());
+    local_of_[v] = static_cast<Index>(local_.size());
     local_.push_back(v);
   }
-  return local_of_[static_cast<std::size_t>(v)];
+  return local_of_[v];
 }
 
 /// Finds the two sides of every facet at the apex: the boundary of the cavity is a
@@ -185,17 +185,17 @@ bool CavityOperator::match() {
 }
 
 bool CavityOperator::match_port(Index index, std::size_t slot) {
-  const Outer &outer = outers_[static_cast<std::size_t>(index)];
+  const Outer &outer = outers_[index];
   const Index u = local_index(outer.v[(slot + 1) % 3]),
               w = local_index(outer.v[(slot + 2) % 3]);
   if (u >= max_local || w >= max_local)
     return false;
-  std::uint32_t &mine = table_[static_cast<std::size_t>(u * max_local + w)];
+  std::uint32_t &mine = table_[u * max_local + w];
   if (mine >> port_bits == epoch_)
     return false; // the boundary of the cavity is pinched
   mine = epoch_ << port_bits | static_cast<std::uint32_t>(index) << 2 |
          static_cast<std::uint32_t>(slot);
-  const std::uint32_t theirs = table_[static_cast<std::size_t>(w * max_local + u)];
+  const std::uint32_t theirs = table_[w * max_local + u];
   if (theirs >> port_bits == epoch_) {
     const std::uint32_t port = theirs & ((1u << port_bits) - 1);
     pairs_.push_back({{index, slot}, {static_cast<Index>(port >> 2), port & 3}, none});
@@ -206,7 +206,7 @@ bool CavityOperator::match_port(Index index, std::size_t slot) {
 /// Gives the facets at the apex their patches, once each.
 bool CavityOperator::constrain() {
   const auto outer_of = [&](const Port &port) -> const Outer & {
-    return outers_[static_cast<std::size_t>(port.outer)];
+    return outers_[port.outer];
   };
   for (Pair &pair : pairs_) {
     bool has_half = false;
@@ -245,12 +245,10 @@ bool CavityOperator::constrain() {
 }
 
 Index CavityOperator::region_at(const Port &port) const {
-  const Outer &outer = outers_[static_cast<std::size_t>(port.outer)];
+  const Outer &outer = outers_[port.outer];
   if (outer.kind == Kind::base)
     return outer.region;
-  return outer.beyond.exists()
-             ? volume_.mesh.region[static_cast<std::size_t>(outer.beyond.cell())]
-             : none;
+  return outer.beyond.exists() ? volume_.mesh.region[outer.beyond.cell()] : none;
 }
 
 bool CavityOperator::separates_regions() const {
@@ -264,7 +262,7 @@ bool CavityOperator::separates_regions() const {
 }
 
 HalfFacet CavityOperator::half_of(const Port &port) const {
-  const Outer &outer = outers_[static_cast<std::size_t>(port.outer)];
+  const Outer &outer = outers_[port.outer];
   // a new cell has the vertices of its base, in order, and then the apex
   return outer.kind == Kind::base ? HalfFacet(outer.cell, port.slot) : outer.beyond;
 }
@@ -278,7 +276,7 @@ void CavityOperator::commit(std::span<const Index> cells) {
     // the new cells take the places of the old ones first
     outer.cell = used < cells.size() ? cells[used] : volume_.add_cell();
     ++used;
-    const auto c = static_cast<std::size_t>(outer.cell);
+    const std::size_t c = outer.cell;
     mesh.cells[c] = {outer.v[0], outer.v[1], outer.v[2], apex_};
     mesh.neighbours[c] = {};
     mesh.constraints[c] = {none, none, none, outer.constraint};
@@ -289,7 +287,7 @@ void CavityOperator::commit(std::span<const Index> cells) {
     volume_.touch(outer.cell);
     volume_.data->slabs.add_cell(mesh.cells[c]);
     for (Index v : mesh.cells[c])
-      mesh.vertex_cell[static_cast<std::size_t>(v)] = outer.cell;
+      mesh.vertex_cell[v] = outer.cell;
   }
   for (std::size_t k = used; k < cells.size(); ++k)
     volume_.free_cell(cells[k]);
@@ -325,13 +323,13 @@ void CavityOperator::join_pairs() {
          {std::pair{one, other}, std::pair{other, one}}) {
       if (!half.exists())
         continue;
-      const auto c = static_cast<std::size_t>(half.cell());
+      const std::size_t c = half.cell();
       mesh.neighbours[c][half.facet()] = opposite;
       mesh.constraints[c][half.facet()] = pair.constraint;
       if (pair.constraint != none)
         volume_.walled[c] = 1;
       for (Index v : mesh.cells[c])
-        mesh.vertex_cell[static_cast<std::size_t>(v)] = half.cell();
+        mesh.vertex_cell[v] = half.cell();
     }
   }
 }

@@ -149,7 +149,7 @@ private:
   [[nodiscard]] HalfFacet half_of(const Port &port) const;
   /// The vertex of the cell at a port that its facet does not contain.
   [[nodiscard]] Index vertex_off(const Port &port) const {
-    const Outer &outer = outers_[static_cast<std::size_t>(port.outer)];
+    const Outer &outer = outers_[port.outer];
     return outer.kind == Kind::base ? outer.v[port.slot]
                                     : volume_.mesh.apex(outer.beyond);
   }
@@ -173,8 +173,7 @@ template <class Visit> void CavityOperator::for_new_facets(Visit visit) const {
     return outer.kind == Kind::base || outer.beyond.exists();
   };
   for (const Pair &pair : pairs_) {
-    const Outer &outer = outers_[static_cast<std::size_t>(pair.one.outer)],
-                &other = outers_[static_cast<std::size_t>(pair.other.outer)];
+    const Outer &outer = outers_[pair.one.outer], &other = outers_[pair.other.outer];
     if (pair.constraint != none || !has_cell(outer) || !has_cell(other))
       continue;
     const Facet<3> t =

@@ -109,9 +109,7 @@ bool CavityOperator::keeps_shape(std::span<const Index> cells) const {
 /// Where bodies touch in the apex these are the cells of all of them.
 bool CavityOperator::keeps_link() {
   const Triangulation<3> &mesh = volume_.mesh;
-  const auto local = [&](Index v) {
-    return static_cast<std::size_t>(local_of_[static_cast<std::size_t>(v)]);
-  };
+  const auto local = [&](Index v) { return static_cast<std::size_t>(local_of_[v]); };
   joined_.assign(local_.size(), 0);
   around_.clear();
   for (const Outer &outer : outers_) {
@@ -147,12 +145,9 @@ bool CavityOperator::keeps_link() {
 /// between these, and a gap between two sheets that share them must not be closed.
 /// @pre keeps_link has found the vertices that keep their edge to the apex.
 bool CavityOperator::keeps_facets_apart() const {
-  const auto is_joined = [&](Index v) {
-    return joined_[static_cast<std::size_t>(local_of_[static_cast<std::size_t>(v)])];
-  };
+  const auto is_joined = [&](Index v) { return joined_[local_of_[v]]; };
   for (const Pair &pair : pairs_) {
-    const Outer &one = outers_[static_cast<std::size_t>(pair.one.outer)],
-                &other = outers_[static_cast<std::size_t>(pair.other.outer)];
+    const Outer &one = outers_[pair.one.outer], &other = outers_[pair.other.outer];
     if (one.kind == Kind::at_apex || other.kind == Kind::at_apex)
       continue; // it stays
     const Index u = one.v[(pair.one.slot + 1) % 3], w = one.v[(pair.one.slot + 2) % 3];
@@ -201,7 +196,7 @@ bool CavityOperator::keeps_surface_links(std::span<const Index> cells) {
   after_.assign(local_.size(), 0);
   const auto count = [&](std::vector<int> &counts, Index v, int n) {
     if (v != none && v != apex_ && volume_.is_marked_vertex(v))
-      counts[static_cast<std::size_t>(local_of_[static_cast<std::size_t>(v)])] += n;
+      counts[local_of_[v]] += n;
   };
   const auto count_facets = [&](std::vector<int> &counts, Index c) {
     if (!volume_.is_walled(c))

@@ -69,7 +69,7 @@ std::size_t Slabs::of_cell(const Cell<3> &cell, int round) const {
 }
 
 void Slabs::add_vertex(Index v) {
-  const auto i = static_cast<std::size_t>(v);
+  const std::size_t i = v;
   if (i == strip.size()) {
     strip.push_back(0);
     border.push_back(0);
@@ -81,7 +81,7 @@ void Slabs::add_cell_on_strips(const Cell<3> &cell) {
   for (int round = 0; round < n_rounds; ++round)
     if (of_cell(cell, round) == nowhere)
       for (Index v : cell) {
-        std::uint8_t &bits = border[static_cast<std::size_t>(v)];
+        std::uint8_t &bits = border[v];
         bits = static_cast<std::uint8_t>(bits | 1u << round);
       }
 }
@@ -106,8 +106,8 @@ Slabs cut_into_slabs(const Triangulation<3> &mesh) {
     }
   }
   const double n = 1 / (cells_across * std::max(least, 1e-3));
-  slabs.n = std::clamp<std::size_t>(static_cast<std::size_t>(n), 1,
-                                    std::min(most_slabs, n_vertices / fewest_vertices));
+  slabs.n =
+      std::clamp<std::size_t>(n, 1, std::min(most_slabs, n_vertices / fewest_vertices));
   if (slabs.n == 1)
     return slabs;
   const std::vector<double> cuts = quantiles(x, 2 * slabs.n);

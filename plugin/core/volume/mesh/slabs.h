@@ -27,22 +27,20 @@ struct Slab {
 /// round 1 one less.
 struct Slabs {
   static constexpr int n_rounds = 2;
-  static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+  static constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
 
   std::size_t n = 1; ///< in round 0
   std::vector<std::uint16_t> strip;
   /// Bit r: a cell at the vertex lies, or has lain, across a cut of round r.
   std::vector<std::uint8_t> border;
 
-  [[nodiscard]] std::size_t count(int round) const {
-    return n + static_cast<std::size_t>(round);
-  }
+  [[nodiscard]] std::size_t count(int round) const { return n + round; }
   [[nodiscard]] Slab slab(std::size_t k, int round) const {
     return {2 * static_cast<int>(k) - round};
   }
   /// The slab with all cells at v, `nowhere` when there is none.
   [[nodiscard]] std::size_t of_star(Index v, int round) const {
-    const bool is_border = (border[static_cast<std::size_t>(v)] >> round & 1) != 0;
+    const bool is_border = (border[v] >> round & 1) != 0;
     return is_border ? nowhere : of_vertex(v, round);
   }
   /// The slab with the cell, `nowhere` when it lies across a cut or is free.
@@ -51,16 +49,14 @@ struct Slabs {
   void add_vertex(Index v);
   /// Notes that there is a new cell. @pre it is not free
   void add_cell(const Cell<3> &cell) {
-    const auto at = [&](std::size_t i) {
-      return strip[static_cast<std::size_t>(cell[i])];
-    };
+    const auto at = [&](std::size_t i) { return strip[cell[i]]; };
     if (at(0) != at(1) || at(0) != at(2) || at(0) != at(3))
       add_cell_on_strips(cell);
   }
 
 private:
   [[nodiscard]] std::size_t of_vertex(Index v, int round) const {
-    return (strip[static_cast<std::size_t>(v)] + static_cast<std::size_t>(round)) / 2;
+    return (strip[v] + round) / 2;
   }
   void add_cell_on_strips(const Cell<3> &cell);
 };

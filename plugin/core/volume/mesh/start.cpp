@@ -94,8 +94,7 @@ void add_cells(Volume &volume, const VolumeInput &input,
       else if (!mesh.neighbours[c][i].exists())
         throw std::invalid_argument("a boundary facet of cell " + std::to_string(c) +
                                     " is not among the facets");
-      mesh.vertex_cell[static_cast<std::size_t>(mesh.cells[c][i])] =
-          static_cast<Index>(c);
+      mesh.vertex_cell[mesh.cells[c][i]] = static_cast<Index>(c);
     }
   if (!table.is_used_up())
     throw std::invalid_argument("a facet is not one of a cell");
@@ -112,13 +111,13 @@ void freeze_touching(Volume &volume) {
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (std::size_t i = 0; i < 4; ++i) {
       const HalfFacet h(static_cast<Index>(c), i);
-      ++n_cells[static_cast<std::size_t>(mesh.cells[c][i])];
+      ++n_cells[mesh.cells[c][i]];
       if (mesh.opposite(h).exists())
         continue;
       const Facet<3> t = mesh.facet(h);
       for (std::size_t k = 0; k < 3; ++k) {
         const Index edge = volume.ridges.find(t[k], t[(k + 1) % 3]);
-        if (edge == none || ++n_facets[static_cast<std::size_t>(edge)] <= 2)
+        if (edge == none || ++n_facets[edge] <= 2)
           continue;
         volume.surface.freeze(volume.ridges.at(edge).curve);
         touching.insert(touching.end(), {t[k], t[(k + 1) % 3]});
@@ -127,13 +126,13 @@ void freeze_touching(Volume &volume) {
   for (const RidgeEdge &edge : volume.ridges.edges())
     if (volume.surface.curve(edge.curve).is_frozen)
       for (Index v : edge.ends)
-        mesh.feature[static_cast<std::size_t>(v)] = Triangulation<3>::corner;
+        mesh.feature[v] = Triangulation<3>::corner;
   std::vector<Index> star;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (mesh.feature[v] == 3 || mesh.vertex_cell[v] == none)
       continue;
     star_of(volume, static_cast<Index>(v), star);
-    if (star.size() == static_cast<std::size_t>(n_cells[v]))
+    if (std::cmp_equal(star.size(), n_cells[v]))
       continue;
     mesh.feature[v] = Triangulation<3>::corner;
     touching.push_back(static_cast<Index>(v));

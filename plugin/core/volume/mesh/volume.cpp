@@ -17,7 +17,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
   }
   v = free_vertices.back();
   free_vertices.pop_back();
-  const auto i = static_cast<std::size_t>(v);
+  const std::size_t i = v;
   mesh.vertices[i] = vertex;
   mesh.feature[i] = dimension;
   mesh.background_cell[i] = background_cell;
@@ -28,7 +28,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
 }
 
 void Volume::remove_vertex(Index v) {
-  mesh.vertex_cell[static_cast<std::size_t>(v)] = none;
+  mesh.vertex_cell[v] = none;
   free_vertices.push_back(v);
 }
 
@@ -39,12 +39,12 @@ Index Volume::add_cell() {
     return c;
   }
   const Index c = mesh.add_cell();
-  if (static_cast<std::size_t>(c) >= quality.size()) {
+  if (std::cmp_greater_equal(c, quality.size())) {
     quality.push_back(0);
     walled.push_back(0);
     cell_clock.push_back(0);
   }
-  if (static_cast<std::size_t>(c) >= cell_stamp_.size())
+  if (std::cmp_greater_equal(c, cell_stamp_.size()))
     cell_stamp_.resize(mesh.cells.size() + mesh.cells.size() / 2, 0);
   return c;
 }
@@ -60,26 +60,26 @@ void Volume::free_cell(Index c) {
 
 void Volume::measure_cell(Index c) {
   const Cell<3> &cell = mesh.at(c);
-  quality[static_cast<std::size_t>(c)] =
+  quality[c] =
       static_cast<float>(shape_quality(mesh.vertex(cell[0]), mesh.vertex(cell[1]),
                                        mesh.vertex(cell[2]), mesh.vertex(cell[3])));
 }
 
 void Volume::touch(Index c) {
-  cell_clock[static_cast<std::size_t>(c)] = clock;
+  cell_clock[c] = clock;
   for (Index v : mesh.at(c))
-    vertex_clock[static_cast<std::size_t>(v)] = clock;
+    vertex_clock[v] = clock;
 }
 
 void star_of(Volume &volume, Index v, std::vector<Index> &cells) {
   const Triangulation<3> &mesh = volume.mesh;
   cells.clear();
   volume.open_cells();
-  const Index first = mesh.vertex_cell[static_cast<std::size_t>(v)];
+  const Index first = mesh.vertex_cell[v];
   volume.mark_cell(first);
   cells.push_back(first);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto c = static_cast<std::size_t>(cells[i]);
+    const std::size_t c = cells[i];
     const Cell<3> &cell = mesh.cells[c];
     const Neighbours<3> &around = mesh.neighbours[c];
     for (std::size_t k = 0; k < 4; ++k)
@@ -95,7 +95,7 @@ void take_along(std::vector<T> &values, const std::vector<Index> &rank, std::siz
   std::vector<T> moved(n);
   for (std::size_t v = 0; v < rank.size(); ++v)
     if (rank[v] != none)
-      moved[static_cast<std::size_t>(rank[v])] = values[v];
+      moved[rank[v]] = values[v];
   values.resize(n);
   std::copy(moved.begin(), moved.end(), values.begin());
 }
@@ -124,7 +124,7 @@ void renumber(Volume &volume, int threads) {
   volume.ridges.renumber(rank, n);
   std::vector<Index> touching;
   for (const auto &[v, cells] : volume.fans)
-    touching.push_back(rank[static_cast<std::size_t>(v)]);
+    touching.push_back(rank[v]);
   gather_fans(volume, touching);
   volume.free_vertices.clear();
   const std::size_t n_cells = mesh.cells.size();
@@ -140,7 +140,7 @@ void renumber(Volume &volume, int threads) {
       // a cell that changed has stamped its vertices: this is never too early
       std::uint32_t clock = volume.clock;
       for (Index v : mesh.cells[c])
-        clock = std::min(clock, volume.vertex_clock[static_cast<std::size_t>(v)]);
+        clock = std::min(clock, volume.vertex_clock[v]);
       volume.cell_clock[c] = clock;
     }
   });

@@ -20,12 +20,12 @@ namespace anistar {
 struct VolumeState {
   Triangulation<3> mesh;
   RidgeGraph ridges;
-  std::vector<Index>
-      support; ///< patch of a vertex on a surface, curve of one on a ridge
-  std::vector<float> quality;       ///< of every cell
-  std::vector<std::uint8_t> walled; ///< whether a cell has a constrained facet
+  PerVertex<Index> support; ///< patch of a vertex on a surface, curve of one on a ridge
+  PerCell<float> quality;
+  PerCell<std::uint8_t> walled; ///< whether a cell has a constrained facet
   /// When a cell, or a cell at a vertex, last changed, in passes.
-  std::vector<std::uint32_t> cell_clock, vertex_clock;
+  PerCell<std::uint32_t> cell_clock;
+  PerVertex<std::uint32_t> vertex_clock;
   Slabs slabs;
   /// No operation may take the worst cell below this, nor further below.
   double kept_quality = 0;
@@ -61,11 +61,11 @@ struct Volume {
   const Background<3> &background = data->background;
   SurfaceShape &surface = data->surface;
   RidgeGraph &ridges = data->ridges;
-  std::vector<Index> &support = data->support;
-  std::vector<float> &quality = data->quality;
-  std::vector<std::uint8_t> &walled = data->walled;
-  std::vector<std::uint32_t> &cell_clock = data->cell_clock;
-  std::vector<std::uint32_t> &vertex_clock = data->vertex_clock;
+  PerVertex<Index> &support = data->support;
+  PerCell<float> &quality = data->quality;
+  PerCell<std::uint8_t> &walled = data->walled;
+  PerCell<std::uint32_t> &cell_clock = data->cell_clock;
+  PerVertex<std::uint32_t> &vertex_clock = data->vertex_clock;
   std::uint32_t &clock = data->clock;
   std::unordered_map<Index, std::vector<Index>> &fans = data->fans;
   std::vector<Index> free_vertices;
@@ -75,23 +75,17 @@ struct Volume {
   bool is_put_off = false;       ///< an operation would have left the slab
 
   [[nodiscard]] bool is_inside(Index v) const {
-    return slab->contains(data->slabs.strip[static_cast<std::size_t>(v)]);
+    return slab->contains(data->slabs.strip[v]);
   }
   [[nodiscard]] std::size_t n_vertices() const {
     return mesh.vertices.size() - free_vertices.size();
   }
-  [[nodiscard]] Index feature(Index v) const {
-    return mesh.feature[static_cast<std::size_t>(v)];
-  }
-  [[nodiscard]] Index support_of(Index v) const {
-    return support[static_cast<std::size_t>(v)];
-  }
+  [[nodiscard]] Index feature(Index v) const { return mesh.feature[v]; }
+  [[nodiscard]] Index support_of(Index v) const { return support[v]; }
   [[nodiscard]] double quality_of(Index c) const {
-    return static_cast<double>(quality[static_cast<std::size_t>(c)]);
+    return static_cast<double>(quality[c]);
   }
-  [[nodiscard]] bool is_walled(Index c) const {
-    return walled[static_cast<std::size_t>(c)] != 0;
-  }
+  [[nodiscard]] bool is_walled(Index c) const { return walled[c] != 0; }
 
   Index add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on,
                    Index background_cell);
@@ -110,14 +104,14 @@ struct Volume {
   void open_cells() { next_epoch(cell_epoch_, cell_stamp_, mesh.cells.size()); }
   bool mark_cell(Index c) { return mark(cell_stamp_, cell_epoch_, c); }
   [[nodiscard]] bool is_marked_cell(Index c) const {
-    return cell_stamp_[static_cast<std::size_t>(c)] == cell_epoch_;
+    return cell_stamp_[c] == cell_epoch_;
   }
   void open_vertices() {
     next_epoch(vertex_epoch_, vertex_stamp_, mesh.vertices.size());
   }
   bool mark_vertex(Index v) { return mark(vertex_stamp_, vertex_epoch_, v); }
   [[nodiscard]] bool is_marked_vertex(Index v) const {
-    return vertex_stamp_[static_cast<std::size_t>(v)] == vertex_epoch_;
+    return vertex_stamp_[v] == vertex_epoch_;
   }
 
 private:
@@ -134,7 +128,7 @@ private:
     }
   }
   static bool mark(std::vector<std::uint32_t> &stamp, std::uint32_t epoch, Index i) {
-    std::uint32_t &s = stamp[static_cast<std::size_t>(i)];
+    std::uint32_t &s = stamp[i];
     if (s == epoch)
       return false;
     s = epoch;

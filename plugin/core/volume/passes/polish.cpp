@@ -66,7 +66,7 @@ void VolumePasses::polish_vertices(double below) {
         volume_.quality_of(static_cast<Index>(c)) < below + largest_difference &&
         measured(mesh, mesh.cells[c]) < below)
       for (Index v : mesh.cells[c])
-        is_wanted[static_cast<std::size_t>(v)] = 1;
+        is_wanted[v] = 1;
   for (std::size_t k = 0; k < n && go_on(k, n); ++k) {
     if (is_wanted[k] == 0 || mesh.feature[k] == Triangulation<3>::corner)
       continue;
@@ -105,7 +105,7 @@ bool VolumePasses::polish_vertex(Index v) {
     return false;
   shapes_.evaluate(mesh.vertex(v));
   for (std::size_t k = 0; k < star_.size(); ++k) {
-    volume_.quality[static_cast<std::size_t>(star_[k])] = shapes_.quality(k);
+    volume_.quality[star_[k]] = shapes_.quality(k);
     volume_.touch(star_[k]);
   }
   return true;
@@ -113,7 +113,7 @@ bool VolumePasses::polish_vertex(Index v) {
 
 bool VolumePasses::polish_step(Index v, const Vector<3> &step, double floor,
                                double &worth) {
-  const auto i = static_cast<std::size_t>(v);
+  const std::size_t i = v;
   Vertex<3> &here = volume_.mesh.vertices[i];
   const Vector<3> x =
       volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);

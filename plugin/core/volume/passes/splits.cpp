@@ -25,7 +25,7 @@ constexpr double hidden = 1e-5;
 } // namespace
 
 std::uint32_t VolumePasses::begin(Pass pass) {
-  std::uint32_t &last = last_[static_cast<std::size_t>(pass)];
+  std::uint32_t &last = last_[pass];
   const std::uint32_t since = last;
   last = ++volume_.clock;
   return since;
@@ -187,11 +187,11 @@ bool VolumePasses::widen_shell(Index v) {
 
 Index VolumePasses::new_vertex(const Vector<3> &x, Index dimension, Index lies_on) {
   // the hint is that of the last vertex of the shell, which is near
-  Index at = volume_.mesh.background_cell[static_cast<std::size_t>(shell_.a)];
+  Index at = volume_.mesh.background_cell[shell_.a];
   const Vertex<3> vertex = volume_.background.vertex(x, at);
   const Index v = volume_.add_vertex(vertex, dimension, lies_on, at);
   std::vector<std::uint16_t> &strip = volume_.data->slabs.strip;
-  strip[static_cast<std::size_t>(v)] = strip[static_cast<std::size_t>(shell_.a)];
+  strip[v] = strip[shell_.a];
   return v;
 }
 

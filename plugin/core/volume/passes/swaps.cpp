@@ -13,7 +13,7 @@ void VolumePasses::swap(double quality) {
   const std::uint32_t since = begin(Pass::swap);
   const auto is_due = [&](Index c) {
     return volume_.mesh.is_alive(c) && volume_.quality_of(c) <= quality &&
-           volume_.cell_clock[static_cast<std::size_t>(c)] >= since;
+           volume_.cell_clock[c] >= since;
   };
   std::vector<Index> cells;
   for (std::size_t k = 0; k < volume_.mesh.cells.size(); ++k)

@@ -57,7 +57,7 @@ void VolumePasses::in_slabs(std::vector<Index> items, SlabOf slab_of, Visit visi
     const auto caller = std::this_thread::get_id();
     std::atomic<bool> stopped = is_stopped();
     std::atomic<std::size_t> next = 0;
-    while (team_.size() + 1 < static_cast<std::size_t>(threads_))
+    while (std::cmp_less(team_.size() + 1, threads_))
       team_.push_back(std::make_shared<Helper>(*this));
     std::vector<Index> kept = std::move(volume_.free_vertices);
     parallel_items(n, threads_, [&] {

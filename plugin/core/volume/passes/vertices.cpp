@@ -173,7 +173,7 @@ Vector<3> VolumePasses::ideal_step(Index v, const Matrix<3> &L, double &worst,
 
 /// @param step in coordinates of space
 bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double sum) {
-  const auto i = static_cast<std::size_t>(v);
+  const std::size_t i = v;
   Vertex<3> &here = volume_.mesh.vertices[i];
   const Vector<3> x =
       volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
@@ -195,7 +195,7 @@ bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double
   here = moved;
   volume_.mesh.background_cell[i] = at;
   for (std::size_t k = 0; k < star_.size(); ++k) {
-    volume_.quality[static_cast<std::size_t>(star_[k])] = shapes_.quality(k);
+    volume_.quality[star_[k]] = shapes_.quality(k);
     volume_.touch(star_[k]);
   }
   ++counts_.moves;
@@ -278,7 +278,7 @@ void VolumePasses::vertices(const VertexRule &rule) {
                                        : volume_.data->slabs.of_star(v, round);
       },
       [&, since](VolumePasses &passes, Index v) {
-        const auto k = static_cast<std::size_t>(v);
+        const std::size_t k = v;
         if (mesh.is_used(v) && volume_.vertex_clock[k] >= since)
           passes.treat_vertex(v, rule, is_placed[k]);
       });

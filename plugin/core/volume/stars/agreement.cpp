@@ -115,8 +115,7 @@ private:
     std::size_t fewest = failing_.size();
     int since = 0; // the last time there were clearly fewer
     const int last_round = persistence_ * max_rounds;
-    const std::size_t most_trials =
-        static_cast<std::size_t>(persistence_) * trials_per_cell * mesh_.n_cells();
+    const std::size_t most_trials = trials_per_cell * mesh_.n_cells() * persistence_;
     for (int round = 0; round < last_round; ++round) {
       if (failing_.empty())
         return AgreementStop::agreed;

@@ -124,13 +124,13 @@ private:
   Shell shell_;
 
   [[nodiscard]] bool is_touched(Index v) const {
-    const auto i = static_cast<std::size_t>(v);
+    const std::size_t i = v;
     return i >= touched_.size() || touched_[i] != 0;
   }
   void touch_link() {
     touched_.resize(mesh_.vertices.size(), 1);
     for (Index v : insertion_.link())
-      touched_[static_cast<std::size_t>(v)] = 1;
+      touched_[v] = 1;
   }
 
   void treat(const BadCell<3> &item, int round) {
@@ -160,7 +160,7 @@ private:
                            static_cast<std::uint64_t>(round));
       if (mover_.move(v, {effort_.trials, most_failing}, random)) {
         ++counts_.moves;
-        touched_[static_cast<std::size_t>(v)] = 1;
+        touched_[v] = 1;
         touch_link();
         return true;
       }
@@ -208,8 +208,7 @@ private:
         wall = at.wall;
       if (at.cell == none)
         continue;
-      ScoredPoint found{
-          {}, {}, at.cell, mesh_.background_cell[static_cast<std::size_t>(item.star)]};
+      ScoredPoint found{{}, {}, at.cell, mesh_.background_cell[item.star]};
       found.p = volume_.background.vertex(x, found.background);
       if (!insertion_.gather(found.p, std::array{at.cell}, {separation}))
         continue;
@@ -273,10 +272,7 @@ private:
     ScoredPoint best;
     for (int k = 0; k < edge_candidates; ++k) {
       const double s = .5 + edge_part * (double(k) / (edge_candidates - 1) - .5);
-      ScoredPoint found{{},
-                        {},
-                        shell_.cells[0],
-                        mesh_.background_cell[static_cast<std::size_t>(shell_.a)]};
+      ScoredPoint found{{}, {}, shell_.cells[0], mesh_.background_cell[shell_.a]};
       found.p = volume_.background.vertex(
           volume_.surface.place(feature.dimension, feature.lies_on, a + s * (b - a)),
           found.background);

@@ -12,7 +12,7 @@ FacetStar facet_star(const Triangulation<3> &mesh, HalfFacet h) {
 
 void FacetMargins::look(HalfFacet h) {
   if (!mesh_.opposite(h).exists() || mesh_.constraint(h) != none) {
-    known_[static_cast<std::size_t>(h.cell())][h.facet()] = untested;
+    known_[h.cell()][h.facet()] = untested;
     return;
   }
   put(h, as_margin(facet_margin(facet_star(mesh_, h))));
@@ -34,9 +34,9 @@ void FacetMargins::fill(int threads) {
 void FacetMargins::forget(Index c) {
   for (std::size_t i = 0; i < 4; ++i) {
     const HalfFacet other = mesh_.opposite(HalfFacet(c, i));
-    known_[static_cast<std::size_t>(c)][i] = unknown;
+    known_[c][i] = unknown;
     if (other.exists())
-      known_[static_cast<std::size_t>(other.cell())][other.facet()] = unknown;
+      known_[other.cell()][other.facet()] = unknown;
   }
 }
 

@@ -17,7 +17,7 @@ public:
 
   /// Of a facet between two cells; `untested` at walls, which are not crossed.
   [[nodiscard]] float at(HalfFacet h) {
-    float &own = known_[static_cast<std::size_t>(h.cell())][h.facet()];
+    float &own = known_[h.cell()][h.facet()];
     if (own == unknown)
       look(h);
     return own;
@@ -26,9 +26,9 @@ public:
   /// Finds all margins, each from the first cell of its facet.
   void fill(int threads);
   void put(HalfFacet h, float margin) {
-    known_[static_cast<std::size_t>(h.cell())][h.facet()] = margin;
+    known_[h.cell()][h.facet()] = margin;
     const HalfFacet other = mesh_.opposite(h);
-    known_[static_cast<std::size_t>(other.cell())][other.facet()] = margin;
+    known_[other.cell()][other.facet()] = margin;
   }
   /// Of a cell that is new or has changed.
   void forget(Index c);

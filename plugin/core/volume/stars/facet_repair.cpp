@@ -136,7 +136,7 @@ bool FacetRepair::insert(Index c, Index a, Index b, CounterRandom &random) {
     Vector<3> x = .5 * (p.x + q.x);
     if (k > 0)
       x += in_space(L, insertion_radius * random_in_ball(random));
-    Index at = volume_.mesh.background_cell[static_cast<std::size_t>(a)];
+    Index at = volume_.mesh.background_cell[a];
     const Vertex<3> vertex = volume_.background.vertex(x, at);
     const Index v = volume_.add_vertex(vertex, Triangulation<3>::interior, none, at);
     const std::span<const Index> shell = shell_.all();

@@ -36,7 +36,7 @@ bool VolumeInsertion::gather(const Vertex<3> &p, std::span<const Index> seeds,
   open();
   cells_.assign(seeds.begin(), seeds.end());
   for (Index c : cells_)
-    stamp_[static_cast<std::size_t>(c)] = epoch_;
+    stamp_[c] = epoch_;
   grow();
   if (cells_.size() > max_cells || !shrink(seeds.size()))
     return false;
@@ -52,7 +52,7 @@ void VolumeInsertion::grow() {
       if (!beyond.exists() || mesh.constraint(h) != none || contains(beyond.cell()) ||
           in_metric_sphere<3>(p_.M, mesh.simplex(beyond.cell()), p_.x) != Side::inside)
         continue;
-      stamp_[static_cast<std::size_t>(beyond.cell())] = epoch_;
+      stamp_[beyond.cell()] = epoch_;
       cells_.push_back(beyond.cell());
     }
 }
@@ -80,7 +80,7 @@ bool VolumeInsertion::shrink(std::size_t n_seeds) {
         continue;
       if (k < n_seeds)
         return false;
-      stamp_[static_cast<std::size_t>(cells_[k])] = epoch_ - 1;
+      stamp_[cells_[k]] = epoch_ - 1;
       cells_.erase(cells_.begin() + static_cast<std::ptrdiff_t>(k--));
       changed = true;
     }
@@ -182,7 +182,7 @@ AgreementCost VolumeInsertion::cost_after() {
     const Spoke &one = spokes_[k], &other = spokes_[k + 1];
     if (one.low != other.low || one.high != other.high)
       continue;
-    const auto &t = outers_[static_cast<std::size_t>(one.base)].v;
+    const auto &t = outers_[one.base].v;
     cost.add_facet(facet_margin({&mesh.vertex(t[0]), &mesh.vertex(t[1]),
                                  &mesh.vertex(t[2]), &p_, &mesh.vertex(other.apex)}));
   }

@@ -75,9 +75,7 @@ private:
   std::vector<std::uint32_t> stamp_; ///< per cell: in the cavity of this epoch
   std::uint32_t epoch_ = 0;
 
-  [[nodiscard]] bool contains(Index c) const {
-    return stamp_[static_cast<std::size_t>(c)] == epoch_;
-  }
+  [[nodiscard]] bool contains(Index c) const { return stamp_[c] == epoch_; }
   [[nodiscard]] bool holds(const Facet<3> &facet) const;
   void open();
   void grow();

@@ -166,7 +166,7 @@ void VolumeRelocation::remember() {
   keep_trial();
   qualities_.clear();
   for (Index c : star_)
-    qualities_.push_back(volume_.quality[static_cast<std::size_t>(c)]);
+    qualities_.push_back(volume_.quality[c]);
   margins_.clear();
   for (const TestedFacet &facet : facets_)
     margins_.push_back(state_.margins.at(facet.at));
@@ -189,11 +189,11 @@ bool VolumeRelocation::try_near(const Vertex<3> &from, double radius,
 
 /// Moves v to the trial that was kept.
 void VolumeRelocation::commit(const Vertex<3> &vertex, Index background_cell) {
-  const auto i = static_cast<std::size_t>(v_);
+  const std::size_t i = v_;
   volume_.mesh.vertices[i] = vertex;
   volume_.mesh.background_cell[i] = background_cell;
   for (std::size_t k = 0; k < star_.size(); ++k) {
-    volume_.quality[static_cast<std::size_t>(star_[k])] = best_qualities_[k];
+    volume_.quality[star_[k]] = best_qualities_[k];
     volume_.touch(star_[k]);
     state_.changed.push_back(star_[k]);
   }
@@ -217,7 +217,7 @@ bool VolumeRelocation::relocate(Index v, double radius, CounterRandom &random) {
     const Vector<3> &centre = k < 3 ? start : best.x;
     const Vector<3> step =
         in_space(L, radius * radius_fractions[k % 3] * random_in_ball(random));
-    Index at = volume_.mesh.background_cell[static_cast<std::size_t>(v)];
+    Index at = volume_.mesh.background_cell[v];
     Score score;
     if (!place(centre + step, at) || !evaluate(floor, best_total, score))
       continue;
@@ -240,7 +240,7 @@ bool VolumeRelocation::wander(Index v, double radius, CounterRandom &random) {
   const double floor = std::min(before.quality_min, agreement_floor) - least_gain;
   const Vector<3> start = trial_.x;
   for (int k = 0; k < n_wandering; ++k) {
-    Index at = volume_.mesh.background_cell[static_cast<std::size_t>(v)];
+    Index at = volume_.mesh.background_cell[v];
     Score score;
     if (!place(start + in_space(L, radius * random_in_ball(random)), at) ||
         !evaluate(floor, std::numeric_limits<double>::infinity(), score) ||
@@ -289,7 +289,7 @@ bool VolumeRelocation::polish(Index v) {
   // what fails is a whole number: this refuses one more, and lets facets come nearer
   const double limit = before.cost.failing + 1;
   for (const double fraction : polish_fractions) {
-    Index at = volume_.mesh.background_cell[static_cast<std::size_t>(v)];
+    Index at = volume_.mesh.background_cell[v];
     if (!place(start + in_space(L, fraction * step), at))
       continue;
     Score score;

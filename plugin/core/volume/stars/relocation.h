@@ -46,7 +46,7 @@ public:
       return false;
     const Score before = here();
     const Vertex<3> from = trial_;
-    const Index from_cell = volume_.mesh.background_cell[static_cast<std::size_t>(v)];
+    const Index from_cell = volume_.mesh.background_cell[v];
     const std::size_t n_changed = state_.changed.size();
     for (int k = 0; k < n_places; ++k) {
       Index at = from_cell;

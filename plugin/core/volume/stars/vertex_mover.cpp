@@ -16,7 +16,7 @@ constexpr double least_gain = .01;
 
 bool VertexMover::move(Index v, const MoveDemand &demand, CounterRandom &random) {
   Triangulation<3> &mesh = volume_.mesh;
-  if (mesh.feature[static_cast<std::size_t>(v)] == Triangulation<3>::corner)
+  if (mesh.feature[v] == Triangulation<3>::corner)
     return false;
   star_of(volume_, v, star_);
   if (!is_free(v))
@@ -33,7 +33,7 @@ bool VertexMover::move(Index v, const MoveDemand &demand, CounterRandom &random)
     mesh.vertex(v) = from;
     return false;
   }
-  mesh.background_cell[static_cast<std::size_t>(v)] = best.background;
+  mesh.background_cell[v] = best.background;
   return true;
 }
 
@@ -64,10 +64,7 @@ ScoredPoint VertexMover::best_place(Index v, int trials, CounterRandom &random) 
   const auto consider = [&](const Vector<3> &x) {
     if (!is_in_range<3>(x))
       return;
-    ScoredPoint found{{},
-                      {},
-                      star_.front(),
-                      volume_.mesh.background_cell[static_cast<std::size_t>(v)]};
+    ScoredPoint found{{}, {}, star_.front(), volume_.mesh.background_cell[v]};
     found.p = volume_.background.vertex(x, found.background);
     if (!insertion_.gather(found.p, star_, {shortest, {none, none}, v}))
       return;
