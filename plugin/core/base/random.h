@@ -5,24 +5,51 @@
 
 namespace anistar {
 
-/// A stream keyed by (seed, vertex, pass); the mixing function is splitmix64 (Steele,
-/// Lea, Flood, Fast splittable pseudorandom number generators, 2014).
+/// Who draws: no two uses that may draw for one item in one pass have one stream. The
+/// values are part of the meshes: another value makes other ones.
+enum class Stream : std::uint64_t {
+  relocate = 0,     ///< better places of a vertex
+  polish = 1,       ///< the same, where only edges become nearer to one
+  pick = 2,         ///< candidates of pick_valid
+  make_way = 3,     ///< places of a vertex too near to a new one
+  repair_facet = 4, ///< what is tried at a facet that fails
+  mend = 0x5741,    ///< places where a star becomes Delaunay
+  wander = ~0ull,   ///< moves that make nothing worse, when no other helps
+};
+
+/// The user's seed, and the round of what visits the same items in every round.
+struct Seed {
+  std::uint64_t value = 0;
+  std::uint32_t round = 0;
+};
+
+/// A sequence keyed by (seed, round, stream, item, pass); the mixing function is
+/// splitmix64 (Steele, Lea, Flood, Fast splittable pseudorandom number generators,
+/// 2014).
 class CounterRandom {
 public:
-  CounterRandom(std::uint64_t seed, std::uint64_t vertex, std::uint64_t pass)
-      : state_(mix(mix(mix(seed) + vertex) + pass)) {}
+  /// @param item a vertex, a cell or a facet
+  CounterRandom(Seed seed, Stream stream, std::int32_t item, std::uint32_t pass)
+      : state_(key(seed, stream, static_cast<std::uint64_t>(item), pass)) {}
 
   /// Uniform in [0, 1).
   [[nodiscard]] double uniform() {
-    state_ += 0x9e3779b97f4a7c15u;
+    state_ += golden;
     return static_cast<double>(mix(state_) >> 11) * 0x1p-53;
   }
 
 private:
+  static constexpr std::uint64_t golden = 0x9e3779b97f4a7c15u;
   std::uint64_t state_;
 
+  [[nodiscard]] static std::uint64_t key(Seed seed, Stream stream, std::uint64_t item,
+                                         std::uint64_t pass) {
+    const std::uint64_t of_stream =
+        mix(seed.value + static_cast<std::uint64_t>(stream));
+    return mix(mix(of_stream + item) + (std::uint64_t{seed.round} << 32 | pass));
+  }
   [[nodiscard]] static std::uint64_t mix(std::uint64_t z) {
-    z += 0x9e3779b97f4a7c15u;
+    z += golden;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);

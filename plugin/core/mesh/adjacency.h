@@ -47,6 +47,8 @@ public:
     return static_cast<std::size_t>(code_ & 3);
   }
   [[nodiscard]] constexpr bool exists() const { return code_ >= 0; }
+  /// As one number.
+  [[nodiscard]] constexpr Index code() const { return code_; }
   friend bool operator==(const HalfFacet &, const HalfFacet &) = default;
 
 private:

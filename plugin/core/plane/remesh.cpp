@@ -147,7 +147,7 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                    (settings.agreement == AgreementMode::when_possible && can_agree));
   if (agreeing) {
     const AgreementCounts agreed =
-        agree(w, legaliser, monitor, settings.seed, settings.threads);
+        agree(w, legaliser, monitor, Seed{settings.seed}, settings.threads);
     // the flips after a move mind no quality
     out.counts["bisections"] +=
         static_cast<double>(bisect(w, legaliser, monitor, floor, settings.threads));
@@ -167,14 +167,15 @@ void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
                         "the edges is above " +
                             std::to_string(out.distortion.p99);
   watch.phase("certificate");
-  StarCheck stars = check_stars(w, monitor, settings.seed, settings.threads, agreeing);
+  StarCheck stars =
+      check_stars(w, monitor, Seed{settings.seed}, settings.threads, agreeing);
   out.counts["star_failures"] = static_cast<double>(stars.failures);
   out.counts["star_moves"] = static_cast<double>(stars.moves);
   if (settings.consistency != ConsistencyMode::off) {
     watch.phase("consistency");
     out.consistency = refine_until_consistent(
-        w, legaliser, monitor, settings.parameters, settings.seed, settings.threads,
-        settings.consistency != ConsistencyMode::pure, stars);
+        w, legaliser, monitor, settings.parameters, Seed{settings.seed},
+        settings.threads, settings.consistency != ConsistencyMode::pure, stars);
   }
   out.was_checked = true;
   out.simplex_ok = stars.simplex_ok;

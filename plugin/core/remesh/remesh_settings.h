@@ -1,6 +1,7 @@
 #pragma once
 // What the remeshers of both dimensions are told.
 
+#include "base/run.h"
 #include "stars/consistency_rules.h"
 
 namespace anistar {
@@ -9,11 +10,6 @@ namespace anistar {
 /// it must not vary too fast from vertex to vertex; in 3D only for insertions to
 /// follow.
 enum class AgreementMode { off, when_possible, on };
-
-/// Largest distances of curves and of surfaces from an edge, relative to its length.
-struct HausdorffNumbers {
-  double curve, surface;
-};
 
 struct RemeshSettings {
   HausdorffNumbers hausdorff{};

@@ -53,8 +53,9 @@ void agree(Volume &volume, Monitor &monitor, const RemeshSettings &settings,
   out.agreement = reason_to_skip(volume, monitor, settings);
   if (!out.agreement.empty())
     return;
-  const VolumeAgreementCounts agreed = agree_volume(
-      volume, monitor, settings.hausdorff.surface, settings.seed, settings.threads);
+  const VolumeAgreementCounts agreed =
+      agree_volume(volume, monitor, settings.hausdorff.surface, Seed{settings.seed},
+                   settings.threads);
   renumber(volume, settings.threads);
   out.agreement = "done";
   if (agreed.facets_after > 0)
@@ -130,13 +131,13 @@ void certify_stars(Volume &volume, Monitor &monitor, const RemeshSettings &setti
     return;
   out.counts["star_failures"] =
       static_cast<double>(failing_cells(volume.mesh, known.bits).size());
-  out.counts["star_moves"] = static_cast<double>(
-      mend_stars(volume, monitor, settings.hausdorff.surface, settings.seed, known));
+  out.counts["star_moves"] = static_cast<double>(mend_stars(
+      volume, monitor, settings.hausdorff.surface, Seed{settings.seed}, known));
   if (inserting) {
     watch.phase("consistency");
-    out.consistency = refine_until_consistent(volume, monitor, settings.parameters,
-                                              settings.hausdorff.surface, settings.seed,
-                                              settings.threads, known);
+    out.consistency = refine_until_consistent(
+        volume, monitor, settings.parameters, settings.hausdorff.surface,
+        Seed{settings.seed}, settings.threads, known);
     out.counts["consistency_moves"] = static_cast<double>(out.consistency.moves);
   }
   const CertifiedFractions fractions = certified_fractions(volume.mesh, known.bits);
@@ -174,7 +175,7 @@ VolumeResult remesh_volume(const VolumeInput &input,
     const SurfaceProjection project = timed(std::move(projection), monitor);
     const Shaping shaping = shape_volume(
         [&] { return make_volume(input, metric, background, geometry, project); },
-        monitor, settings.hausdorff, settings.seed, settings.threads, watch);
+        monitor, settings.hausdorff, Seed{settings.seed}, settings.threads, watch);
     Volume &volume = *shaping.volume;
     watch.phase("agreement");
     agree(volume, monitor, settings, out);

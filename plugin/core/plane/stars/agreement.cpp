@@ -39,7 +39,7 @@ private:
 /// A relocator of its own for each thread; what it lists is kept by block.
 template <class Move> class BlockRelocator {
 public:
-  BlockRelocator(Workspace &w, Legaliser &legaliser, std::uint64_t seed, Move move,
+  BlockRelocator(Workspace &w, Legaliser &legaliser, Seed seed, Move move,
                  AgreementCounts &counts, std::vector<std::vector<Index>> &listed)
       : total_(legaliser), counts_(counts), listed_(listed),
         own_(std::make_unique<Legaliser>(w.mesh)), relocator_(w, *own_, seed),
@@ -63,7 +63,7 @@ private:
 
 class Agreement {
 public:
-  Agreement(Workspace &w, Legaliser &legaliser, Monitor &monitor, std::uint64_t seed,
+  Agreement(Workspace &w, Legaliser &legaliser, Monitor &monitor, Seed seed,
             int threads)
       : w_(w), mesh_(w.mesh), legaliser_(legaliser), monitor_(monitor), seed_(seed),
         threads_(threads), blocks_(mesh_.vertices.size()),
@@ -88,7 +88,7 @@ private:
   Triangulation<2> &mesh_;
   Legaliser &legaliser_;
   Monitor &monitor_;
-  std::uint64_t seed_;
+  Seed seed_;
   int threads_;
   Blocks blocks_;
   AgreementCounts counts_;
@@ -216,8 +216,8 @@ private:
 
 } // namespace
 
-AgreementCounts agree(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                      std::uint64_t seed, int threads) {
+AgreementCounts agree(Workspace &w, Legaliser &legaliser, Monitor &monitor, Seed seed,
+                      int threads) {
   return Agreement(w, legaliser, monitor, seed, threads).run();
 }
 

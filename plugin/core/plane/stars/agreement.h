@@ -1,7 +1,7 @@
 #pragma once
 // Phase 4: vertices are moved until the metrics of neighbours agree about every edge.
 
-#include "base/monitor.h"
+#include "base/run.h"
 #include "plane/stars/relocator.h"
 
 namespace anistar {
@@ -10,7 +10,7 @@ namespace anistar {
 /// number, then walks on the plateau while few are left. The set of vertices to visit
 /// is maintained, never searched for again. Vertices are moved in blocks, see
 /// mesh/blocks.h.
-AgreementCounts agree(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                      std::uint64_t seed, int threads);
+AgreementCounts agree(Workspace &w, Legaliser &legaliser, Monitor &monitor, Seed seed,
+                      int threads);
 
 } // namespace anistar

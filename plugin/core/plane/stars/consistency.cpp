@@ -29,7 +29,7 @@ constexpr int not_insertable = std::numeric_limits<int>::max();
 
 class Rounds {
 public:
-  Rounds(Workspace &w, const ConsistencyParameters &parameters, std::uint64_t seed,
+  Rounds(Workspace &w, const ConsistencyParameters &parameters, Seed seed,
          ConsistencyCounts &counts)
       : w_(w), mesh_(w.mesh), parameters_(parameters), seed_(seed), counts_(counts) {}
 
@@ -58,7 +58,7 @@ private:
   Workspace &w_;
   Triangulation<2> &mesh_;
   const ConsistencyParameters &parameters_;
-  std::uint64_t seed_;
+  Seed seed_;
   ConsistencyCounts &counts_;
   std::vector<std::pair<Index, HalfFacet>> ring_;
 
@@ -67,8 +67,7 @@ private:
     const Simplex<2> s = mesh_.simplex(item.cell);
     const Circumcircle ball = circumcircle(M, s[0], s[1], s[2]);
     const EllipseSampler ellipse(M);
-    CounterRandom random(seed_ + 2, static_cast<std::uint64_t>(item.cell),
-                         static_cast<std::uint64_t>(round));
+    CounterRandom random(seed_, Stream::pick, item.cell, round);
     // rule 1 inserts the circumcentre itself, the others a point of the picking region
     const bool is_centre_wanted = item.rule == Rule::size;
     int fewest = not_insertable;
@@ -201,8 +200,8 @@ private:
 ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
                                           Monitor &monitor,
                                           const ConsistencyParameters &parameters,
-                                          std::uint64_t seed, int threads,
-                                          bool relocate, StarCheck &check) {
+                                          Seed seed, int threads, bool relocate,
+                                          StarCheck &check) {
   ConsistencyCounts counts;
   Rounds rounds(w, parameters, seed, counts);
   RoundBounds bounds{max_rounds, patience, 0};
@@ -236,7 +235,7 @@ ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
     since_best += relocate || rule == Rule::inconsistency || rule == Rule::kept;
     const bool moving =
         relocate && is_moved_after(counts.rounds, failing_fraction(check.bits));
-    const std::uint64_t round_seed = seed + 1 + std::uint64_t(counts.rounds);
+    const Seed round_seed{seed.value, static_cast<std::uint32_t>(counts.rounds) + 1};
     if (moving)
       (void)agree(w, legaliser, monitor, round_seed, threads);
     renumber(w, threads);

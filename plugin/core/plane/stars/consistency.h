@@ -2,6 +2,7 @@
 // Phase 6: Algorithms 1 to 3 of Boissonnat, Wormser, Yvinec (RR-7712 v2, section 4) on
 // what agreement has left.
 
+#include "base/run.h"
 #include "plane/stars/agreement.h"
 #include "plane/stars/star_check.h"
 #include "stars/consistency_rules.h"
@@ -18,7 +19,7 @@ namespace anistar {
 /// vertex. When it does not end consistent, the best mesh seen is left.
 [[nodiscard]] ConsistencyCounts
 refine_until_consistent(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                        const ConsistencyParameters &parameters, std::uint64_t seed,
-                        int threads, bool relocate, StarCheck &check);
+                        const ConsistencyParameters &parameters, Seed seed, int threads,
+                        bool relocate, StarCheck &check);
 
 } // namespace anistar

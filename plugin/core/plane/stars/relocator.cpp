@@ -56,8 +56,7 @@ bool Relocator::move(Index v, double radius, int pass) {
   const Index feature = mesh_.feature[v];
   if (feature == Triangulation<2>::corner || relocation_.count_disagreeing() == 0)
     return false;
-  CounterRandom random(seed_, static_cast<std::uint64_t>(v),
-                       static_cast<std::uint64_t>(pass));
+  CounterRandom random(seed_, Stream::relocate, v, pass);
   return feature == 1 ? move_on_curve(v, random, 1) : move_freely(v, radius, random);
 }
 
@@ -158,8 +157,7 @@ void Relocator::move_randomly(Index v, int round) {
   const Index feature = mesh_.feature[v];
   if (feature == Triangulation<2>::corner)
     return;
-  CounterRandom random(~seed_, static_cast<std::uint64_t>(v),
-                       static_cast<std::uint64_t>(round));
+  CounterRandom random(seed_, Stream::wander, v, round);
   if (feature == 1) {
     (void)move_on_curve(v, random, 0);
     return;
@@ -189,8 +187,7 @@ bool Relocator::polish(Index v, int sweep, const VertexRange &range) {
   const Vector<2> x0 = from.vertex.x;
   const StarScore before = relocation_.score();
   const EllipseSampler ellipse(from.vertex.M);
-  CounterRandom random(seed_ + 1, static_cast<std::uint64_t>(v),
-                       static_cast<std::uint64_t>(sweep));
+  CounterRandom random(seed_, Stream::polish, v, sweep);
   const Vector<2> pliant = pliant_displacement(mesh_, from.vertex, relocation_.star());
   Place best = from;
   double best_excess = before.excess - least_gain;

@@ -1,6 +1,7 @@
 #pragma once
 // What agreement does at one vertex: it is moved to the best of some trial places.
 
+#include "base/run.h"
 #include "plane/mesh/flips.h"
 #include "plane/mesh/protecting_ball.h"
 #include "plane/mesh/relocation.h"
@@ -30,7 +31,7 @@ struct AgreementCounts {
 /// Moves vertices of a range of the mesh, one after another; an object to a thread.
 class Relocator {
 public:
-  Relocator(Workspace &w, Legaliser &legaliser, std::uint64_t seed)
+  Relocator(Workspace &w, Legaliser &legaliser, Seed seed)
       : w_(w), mesh_(w.mesh), legaliser_(legaliser), seed_(seed), relocation_(w) {}
 
   /// The three ways to move v. Each @returns false, without a change, when that would
@@ -49,7 +50,7 @@ private:
   Workspace &w_;
   Triangulation<2> &mesh_;
   Legaliser &legaliser_;
-  std::uint64_t seed_;
+  Seed seed_;
   Relocation relocation_;
   std::optional<ProtectingBall> ball_; ///< once a vertex on a shell is met
   VertexRange range_;

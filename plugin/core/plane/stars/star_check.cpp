@@ -13,7 +13,7 @@ constexpr double radius = .3;
 
 class Mender {
 public:
-  Mender(Workspace &w, std::uint64_t seed)
+  Mender(Workspace &w, Seed seed)
       : mesh_(w.mesh), seed_(seed), relocation_(w), failures_(mesh_) {}
 
   /// Moves the vertex inside the ball of a failing cell, one of its own or one across
@@ -31,7 +31,7 @@ public:
 
 private:
   Triangulation<2> &mesh_;
-  std::uint64_t seed_;
+  Seed seed_;
   Relocation relocation_;
   StarFailures<2> failures_;
   std::vector<Index> changed_;
@@ -45,8 +45,7 @@ private:
       cells.push_back(h.cell());
     failures_.surround(cells);
     const int failing = failures_.count();
-    CounterRandom random(seed_ ^ 0x5741u, static_cast<std::uint64_t>(v),
-                         static_cast<std::uint64_t>(round));
+    CounterRandom random(seed_, Stream::mend, v, round);
     const EllipseSampler ellipse(from.vertex.M);
     for (int k = 0; k < n_candidates; ++k) {
       const Vector<2> x =
@@ -70,7 +69,7 @@ private:
 
 } // namespace
 
-StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed, int threads,
+StarCheck check_stars(Workspace &w, Monitor &monitor, Seed seed, int threads,
                       bool mend) {
   const Triangulation<2> &mesh = w.mesh;
   DelaunayBits found =

@@ -2,7 +2,7 @@
 // Phase 5: every star is checked, and vertices are moved at the failures that no local
 // test can see.
 
-#include "base/monitor.h"
+#include "base/run.h"
 #include "certificate/certificate.h"
 #include "plane/mesh/edits.h"
 
@@ -20,7 +20,7 @@ struct StarCheck {
 };
 
 /// @pre the mesh has no free cells (sort_along_curve was its last change of topology).
-[[nodiscard]] StarCheck check_stars(Workspace &w, Monitor &monitor, std::uint64_t seed,
+[[nodiscard]] StarCheck check_stars(Workspace &w, Monitor &monitor, Seed seed,
                                     int threads, bool mend);
 
 } // namespace anistar

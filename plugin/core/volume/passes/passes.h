@@ -44,7 +44,7 @@ struct VertexRule {
 class VolumePasses {
 public:
   VolumePasses(Volume &volume, Monitor &monitor, const HausdorffNumbers &hausdorff,
-               std::uint64_t seed, int threads = 1)
+               Seed seed, int threads = 1)
       : volume_(volume), operator_(volume), monitor_(monitor),
         hausdorff_number_(hausdorff.surface), ridge_hausdorff_number_(hausdorff.curve),
         seed_(seed), threads_(threads) {}
@@ -83,7 +83,7 @@ private:
   Monitor &monitor_;
   double hausdorff_number_;       ///< of curved surfaces, relative to an edge
   double ridge_hausdorff_number_; ///< and of ridges
-  std::uint64_t seed_;
+  Seed seed_;
   int threads_;
   VolumeCounts counts_;
   std::array<std::uint32_t, 4> last_{};

@@ -148,7 +148,7 @@ enum class Keeping { at_final_size, always };
 
 /// The mesh after phases 2 and 3.
 Shaping attempt(Volume start, Keeping keeping, Monitor &monitor,
-                const HausdorffNumbers &hausdorff, std::uint64_t seed, int threads,
+                const HausdorffNumbers &hausdorff, Seed seed, int threads,
                 Stopwatch &watch) {
   auto volume = std::make_unique<Volume>(std::move(start));
   const double kept =
@@ -168,7 +168,7 @@ Shaping attempt(Volume start, Keeping keeping, Monitor &monitor,
 } // namespace
 
 Shaping shape_volume(const std::function<Volume()> &start, Monitor &monitor,
-                     const HausdorffNumbers &hausdorff, std::uint64_t seed, int threads,
+                     const HausdorffNumbers &hausdorff, Seed seed, int threads,
                      Stopwatch &watch) {
   const auto make = [&](Keeping keeping) {
     return attempt(start(), keeping, monitor, hausdorff, seed, threads, watch);

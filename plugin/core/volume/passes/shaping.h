@@ -25,6 +25,6 @@ struct Shaping {
 /// @param start makes the mesh that it begins with
 [[nodiscard]] Shaping shape_volume(const std::function<Volume()> &start,
                                    Monitor &monitor, const HausdorffNumbers &hausdorff,
-                                   std::uint64_t seed, int threads, Stopwatch &watch);
+                                   Seed seed, int threads, Stopwatch &watch);
 
 } // namespace anistar

@@ -223,7 +223,7 @@ void VolumePasses::move(Index v) {
       return;
   if (worst > random_below)
     return;
-  CounterRandom random(seed_, static_cast<std::uint64_t>(v), volume_.clock);
+  CounterRandom random(seed_, Stream::relocate, v, volume_.clock);
   Vector<3> y;
   do
     for (int k = 0; k < 3; ++k)

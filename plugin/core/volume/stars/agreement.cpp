@@ -34,8 +34,8 @@ constexpr std::size_t calls_between_looks = 64;
 
 class VolumeAgreement {
 public:
-  VolumeAgreement(Volume &volume, Monitor &monitor, double hausdorff_number,
-                  std::uint64_t seed, int persistence)
+  VolumeAgreement(Volume &volume, Monitor &monitor, double hausdorff_number, Seed seed,
+                  int persistence)
       : volume_(volume), mesh_(volume.mesh), monitor_(monitor), seed_(seed),
         persistence_(persistence), state_(volume, hausdorff_number),
         relocation_(state_), repair_(state_, monitor) {}
@@ -56,7 +56,7 @@ private:
   Volume &volume_;
   const Triangulation<3> &mesh_;
   Monitor &monitor_;
-  std::uint64_t seed_;
+  Seed seed_;
   int persistence_;
   AgreementState state_;
   VolumeRelocation relocation_;
@@ -147,8 +147,7 @@ private:
       const HalfFacet h = failing_[k];
       if (!still_fails(h))
         continue;
-      CounterRandom random(seed_, static_cast<std::uint64_t>(k),
-                           static_cast<std::uint64_t>(round));
+      CounterRandom random(seed_, Stream::repair_facet, h.code(), round);
       if (is_repairing)
         counts_.repairs += repair_.collapse_or_insert(h, random);
       else
@@ -200,8 +199,8 @@ private:
 } // namespace
 
 VolumeAgreementCounts agree_volume(Volume &volume, Monitor &monitor,
-                                   double hausdorff_number, std::uint64_t seed,
-                                   int threads, int persistence) {
+                                   double hausdorff_number, Seed seed, int threads,
+                                   int persistence) {
   return VolumeAgreement(volume, monitor, hausdorff_number, seed, persistence)
       .run(threads);
 }

@@ -2,7 +2,7 @@
 // Phase 4 in 3D: the mesh is changed until the metrics of neighbours agree about every
 // facet.
 
-#include "base/monitor.h"
+#include "base/run.h"
 #include "volume/mesh/volume.h"
 
 #include <cstdint>
@@ -45,7 +45,7 @@ struct VolumeAgreementCounts {
 /// @param hausdorff_number of curved surfaces, as in VolumePasses
 /// @param persistence so many times the rounds and trials, for what is stuck
 VolumeAgreementCounts agree_volume(Volume &volume, Monitor &monitor,
-                                   double hausdorff_number, std::uint64_t seed,
-                                   int threads, int persistence = 1);
+                                   double hausdorff_number, Seed seed, int threads,
+                                   int persistence = 1);
 
 } // namespace anistar

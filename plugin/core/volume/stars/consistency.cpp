@@ -87,7 +87,7 @@ struct Progress {
 class Rounds {
 public:
   Rounds(Volume &volume, Monitor &monitor, const ConsistencyParameters &parameters,
-         std::uint64_t seed, ConsistencyCounts &counts)
+         Seed seed, ConsistencyCounts &counts)
       : volume_(volume), mesh_(volume.mesh), monitor_(monitor), parameters_(parameters),
         seed_(seed), operator_(volume), insertion_(volume),
         mover_(volume, insertion_, operator_, parameters.sigma_0), counts_(counts) {}
@@ -114,7 +114,7 @@ private:
   Triangulation<3> &mesh_;
   Monitor &monitor_;
   const ConsistencyParameters &parameters_;
-  std::uint64_t seed_;
+  Seed seed_;
   CavityOperator operator_;
   VolumeInsertion insertion_;
   VertexMover mover_;
@@ -156,8 +156,7 @@ private:
         vertices[n++] = mesh_.apex(beyond);
     for (std::size_t k = 0; k < n; ++k) {
       const Index v = vertices[k];
-      CounterRandom random(seed_ + 3, static_cast<std::uint64_t>(v),
-                           static_cast<std::uint64_t>(round));
+      CounterRandom random(seed_, Stream::make_way, v, round);
       if (mover_.move(v, {effort_.trials, most_failing}, random)) {
         ++counts_.moves;
         touched_[v] = 1;
@@ -196,8 +195,7 @@ private:
     const SymmetricTensor<3> M = mesh_.vertex(item.star).M;
     const Circumsphere<3> ball = circumsphere<3>(M, mesh_.simplex(item.cell));
     const EllipseSampler<3> ellipse(M);
-    CounterRandom random(seed_ + 2, static_cast<std::uint64_t>(item.cell),
-                         static_cast<std::uint64_t>(round));
+    CounterRandom random(seed_, Stream::pick, item.cell, round);
     ScoredPoint best;
     for (int k = 0; k < parameters_.candidates; ++k) {
       Vector<3> x = ball.centre;
@@ -328,7 +326,7 @@ void renew(const Volume &volume, std::uint32_t since, int threads, const Look &l
 
 ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
                                           const ConsistencyParameters &parameters,
-                                          double hausdorff_number, std::uint64_t seed,
+                                          double hausdorff_number, Seed seed,
                                           int threads, DelaunayBits &known) {
   ConsistencyCounts counts;
   Rounds rounds(volume, monitor, parameters, seed, counts);
@@ -348,7 +346,7 @@ ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
     if (!counts.stop.empty())
       break;
     const std::uint32_t since = ++volume.clock;
-    const std::uint64_t round_seed = seed + 1 + std::uint64_t(counts.rounds);
+    const Seed round_seed{seed.value, static_cast<std::uint32_t>(counts.rounds) + 1};
     const bool agreeing = progress.asks_for_agreement();
     if (agreeing) {
       progress.since_agreement = 0;

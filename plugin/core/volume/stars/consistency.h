@@ -2,7 +2,7 @@
 // Phase 6 in 3D: Algorithms 1 to 3 of Boissonnat, Wormser, Yvinec (RR-7712 v2,
 // section 4) on one valid mesh of tetrahedra.
 
-#include "base/monitor.h"
+#include "base/run.h"
 #include "stars/consistency_rules.h"
 #include "volume/mesh/volume.h"
 
@@ -25,6 +25,6 @@ namespace anistar {
 /// mesh that is left
 [[nodiscard]] ConsistencyCounts refine_until_consistent(
     Volume &volume, Monitor &monitor, const ConsistencyParameters &parameters,
-    double hausdorff_number, std::uint64_t seed, int threads, DelaunayBits &known);
+    double hausdorff_number, Seed seed, int threads, DelaunayBits &known);
 
 } // namespace anistar

@@ -10,7 +10,7 @@ constexpr double radius = .3;
 
 class VolumeMender {
 public:
-  VolumeMender(Volume &volume, double hausdorff_number, std::uint64_t seed)
+  VolumeMender(Volume &volume, double hausdorff_number, Seed seed)
       : volume_(volume), seed_(seed), state_(volume, hausdorff_number),
         relocation_(state_), failures_(volume.mesh) {}
 
@@ -20,8 +20,7 @@ public:
       star_of(volume_, v, star_);
       failures_.surround(star_);
       const int failing = failures_.count();
-      CounterRandom random(seed_ ^ 0x5741u, static_cast<std::uint64_t>(v),
-                           static_cast<std::uint64_t>(round));
+      CounterRandom random(seed_, Stream::mend, v, round);
       if (relocation_.relocate_where(v, radius, random, [&] {
             return failures_.count_moved(v, failing) < failing;
           })) {
@@ -38,7 +37,7 @@ public:
 
 private:
   Volume &volume_;
-  std::uint64_t seed_;
+  Seed seed_;
   AgreementState state_;
   VolumeRelocation relocation_;
   StarFailures<3> failures_;
@@ -48,7 +47,7 @@ private:
 } // namespace
 
 std::size_t mend_stars(Volume &volume, Monitor &monitor, double hausdorff_number,
-                       std::uint64_t seed, DelaunayBits &known) {
+                       Seed seed, DelaunayBits &known) {
   VolumeMender mender(volume, hausdorff_number, seed);
   return mend_failures(volume.mesh, mender, monitor, known);
 }

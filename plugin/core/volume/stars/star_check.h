@@ -2,7 +2,7 @@
 // Phase 5 in 3D: vertices are moved at the few failures of the certificate that no test
 // on one facet can see.
 
-#include "base/monitor.h"
+#include "base/run.h"
 #include "certificate/certificate.h"
 #include "volume/mesh/volume.h"
 
@@ -18,6 +18,6 @@ namespace anistar {
 /// @param known the answers for the mesh, before and after
 /// @returns the number of moves
 std::size_t mend_stars(Volume &volume, Monitor &monitor, double hausdorff_number,
-                       std::uint64_t seed, DelaunayBits &known);
+                       Seed seed, DelaunayBits &known);
 
 } // namespace anistar
