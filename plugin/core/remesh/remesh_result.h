@@ -3,7 +3,7 @@
 
 #include "base/monitor.h"
 #include "mesh/statistics.h"
-#include "stars/consistency_rules.h"
+#include "stars/rules.h"
 
 #include <map>
 #include <string>

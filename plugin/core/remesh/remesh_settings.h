@@ -2,7 +2,7 @@
 // What the remeshers of both dimensions are told.
 
 #include "base/run.h"
-#include "stars/consistency_rules.h"
+#include "stars/rules.h"
 
 namespace anistar {
 

@@ -3,7 +3,7 @@
 // tetrahedra.
 
 #include "metric/background.h"
-#include "stars/consistency_rules.h"
+#include "stars/rules.h"
 
 namespace anistar {
 

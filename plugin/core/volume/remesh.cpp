@@ -1,11 +1,11 @@
 #include "volume/remesh.h"
 
 #include "base/stopwatch.h"
-#include "stars/star_failures.h"
+#include "stars/star_mending.h"
 #include "volume/passes/shaping.h"
 #include "volume/stars/agreement.h"
 #include "volume/stars/consistency.h"
-#include "volume/stars/star_check.h"
+#include "volume/stars/star_mending.h"
 
 #include <iomanip>
 #include <sstream>

@@ -4,7 +4,7 @@
 #include "mesh/mesh_walk.h"
 #include "plane/mesh/relocation.h"
 #include "stars/bad_cells.h"
-#include "stars/round_bounds.h"
+#include "stars/algorithm_2.h"
 
 #include <cmath>
 #include <utility>

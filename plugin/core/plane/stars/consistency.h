@@ -4,8 +4,8 @@
 
 #include "base/run.h"
 #include "plane/stars/agreement.h"
-#include "plane/stars/star_check.h"
-#include "stars/consistency_rules.h"
+#include "plane/stars/star_mending.h"
+#include "stars/rules.h"
 
 namespace anistar {
 

@@ -3,10 +3,10 @@
 #include "base/ellipse_sampler.h"
 #include "mesh/mesh_walk.h"
 #include "stars/bad_cells.h"
-#include "stars/round_bounds.h"
+#include "stars/algorithm_2.h"
 #include "volume/mesh/shell.h"
 #include "volume/stars/agreement.h"
-#include "volume/stars/star_check.h"
+#include "volume/stars/star_mending.h"
 #include "volume/stars/vertex_mover.h"
 
 #include <optional>

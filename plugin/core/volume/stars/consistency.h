@@ -3,7 +3,7 @@
 // section 4) on one valid mesh of tetrahedra.
 
 #include "base/run.h"
-#include "stars/consistency_rules.h"
+#include "stars/rules.h"
 #include "volume/mesh/volume.h"
 
 namespace anistar {

@@ -1,6 +1,6 @@
-#include "volume/stars/star_check.h"
+#include "volume/stars/star_mending.h"
 
-#include "stars/star_failures.h"
+#include "stars/star_mending.h"
 #include "volume/stars/relocation.h"
 
 namespace anistar {

@@ -3,7 +3,7 @@
 // mends them by moving vertices; for meshes of triangles and of tetrahedra.
 
 #include "base/monitor.h"
-#include "stars/consistency_rules.h"
+#include "stars/rules.h"
 
 #include <algorithm>
 #include <bit>

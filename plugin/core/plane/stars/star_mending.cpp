@@ -1,8 +1,8 @@
-#include "plane/stars/star_check.h"
+#include "plane/stars/star_mending.h"
 
 #include "plane/mesh/moves.h"
 #include "plane/mesh/relocation.h"
-#include "stars/star_failures.h"
+#include "stars/star_mending.h"
 
 namespace anistar {
 namespace {
