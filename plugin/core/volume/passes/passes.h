@@ -67,7 +67,7 @@ public:
   /// the metric varies much within half of the cells.
   [[nodiscard]] bool is_metric_steep() const;
   /// Makes a pass look at everything the next time.
-  void look_everywhere(Pass pass) { last_[pass] = 0; }
+  void look_everywhere(Pass pass) { last_[static_cast<std::size_t>(pass)] = 0; }
   [[nodiscard]] double longest_edge() const;
   /// Of the cells, in the measure of the passes.
   [[nodiscard]] double least_quality() const;

@@ -25,7 +25,7 @@ constexpr double hidden = 1e-5;
 } // namespace
 
 std::uint32_t VolumePasses::begin(Pass pass) {
-  std::uint32_t &last = last_[pass];
+  std::uint32_t &last = last_[static_cast<std::size_t>(pass)];
   const std::uint32_t since = last;
   last = ++volume_.clock;
   return since;
