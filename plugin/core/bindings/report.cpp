@@ -1,6 +1,7 @@
 #include "report.h"
 
 #include "geometry.h"
+#include "remesh/agreement_text.h"
 
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
@@ -66,8 +67,9 @@ nb::dict as_dict(const ConsistencyCounts &counts) {
 }
 
 /// None when the certificate was not asked.
-nb::object certified_fraction(bool was_checked, double value) {
-  return was_checked ? nb::object(nb::float_(value)) : nb::none();
+nb::object certified_fraction(const std::optional<CertifiedFractions> &certified,
+                              double CertifiedFractions::*value) {
+  return certified ? nb::object(nb::float_((*certified).*value)) : nb::none();
 }
 
 } // namespace
@@ -79,9 +81,11 @@ template <std::size_t d> nb::dict as_dict(const RemeshResult<d> &result) {
   out["cell_tags"] = owned(std::vector(result.cell_tags), {result.cells.size()});
   out["facets"] = rows<Index, d>(result.facets);
   out["facet_tags"] = owned(std::vector(result.facet_tags), {result.facets.size()});
-  out["simplex_ok"] = certified_fraction(result.was_checked, result.simplex_ok);
-  out["star_ok"] = certified_fraction(result.was_checked, result.star_ok);
-  out["agreement"] = result.agreement;
+  out["simplex_ok"] =
+      certified_fraction(result.stars.certified, &CertifiedFractions::simplex_ok);
+  out["star_ok"] =
+      certified_fraction(result.stars.certified, &CertifiedFractions::star_ok);
+  out["agreement"] = text_of<d>(result.agreement);
   out["consistency"] = as_dict(result.consistency);
   out["distortion"] = as_dict(result.distortion);
   out["statistics"] = as_dict(result.statistics);

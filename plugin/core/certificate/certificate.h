@@ -9,8 +9,7 @@
 // RR-7712 v2, section 3).
 
 #include "certificate/circumball.h"
-#include "mesh/adjacency.h"
-#include "mesh/measures.h"
+#include "mesh/triangulation.h"
 
 #include <array>
 #include <cstdint>
@@ -35,6 +34,11 @@ template <std::size_t d> struct CertifiedMesh {
   /// Facets whose entry is not `none` are walls and are not crossed.
   std::span<const std::array<Index, d + 1>> constraints;
 };
+
+template <std::size_t d>
+[[nodiscard]] CertifiedMesh<d> certified(const Triangulation<d> &mesh) {
+  return {mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints};
+}
 
 /// Decides for one simplex and metric after another; one object to a thread.
 template <std::size_t d> class DelaunayTest {

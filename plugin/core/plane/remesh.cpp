@@ -6,8 +6,12 @@
 #include "plane/passes/bisection.h"
 #include "plane/passes/refine.h"
 #include "plane/passes/shape.h"
+#include "plane/stars/agreement.h"
 #include "plane/stars/consistency.h"
+#include "plane/stars/star_mending.h"
 #include "remesh/kept_quality.h"
+#include "remesh/star_phases.h"
+#include "stars/certify_all.h"
 
 namespace anistar {
 namespace {
@@ -123,63 +127,90 @@ void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
       static_cast<double>(bisect(w, legaliser, monitor, floor, threads));
 }
 
-/// Phases 4 and 5, as far as the metric and the settings let them.
-void certify_stars(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                   const RemeshSettings &settings, const QualityFloor &floor,
-                   Stopwatch &watch, RemeshResult<2> &out) {
-  watch.phase("agreement");
-  out.distortion =
-      distortion_quantiles(w.mesh.vertices, w.mesh.cells, settings.threads);
-  const bool can_agree = out.distortion.p99 <= largest_agreeing_distortion;
-  const bool is_pure = settings.consistency == ConsistencyMode::pure;
-  if (settings.agreement == AgreementMode::off &&
-      settings.consistency == ConsistencyMode::off) {
-    out.agreement = "off";
-    return;
+/// What certify_stars needs of a mesh of triangles.
+class PlaneStars {
+public:
+  static constexpr std::size_t d = 2;
+
+  PlaneStars(Workspace &w, Legaliser &legaliser, const Run &run,
+             const QualityFloor &floor, RemeshResult<2> &out)
+      : w_(w), legaliser_(legaliser), run_(run), floor_(floor), out_(out) {}
+
+  [[nodiscard]] const Triangulation<2> &mesh() const { return w_.mesh; }
+
+  [[nodiscard]] AgreementReport plan(const RemeshSettings &settings) {
+    out_.distortion =
+        distortion_quantiles(w_.mesh.vertices, w_.mesh.cells, run_.threads);
+    AgreementReport plan;
+    const bool is_wanted = settings.agreement != AgreementMode::off &&
+                           settings.consistency != ConsistencyMode::pure;
+    if (run_.is_stopped() && asks_for_stars(settings)) {
+      // the cells of a mesh that is not refined can reach across the whole domain
+      plan.outcome = AgreementOutcome::stopped_before;
+      plan.stopped_by = run_.monitor.reason();
+    } else if (is_wanted && settings.agreement == AgreementMode::when_possible &&
+               out_.distortion.p99 > largest_agreeing_distortion) {
+      plan.outcome = AgreementOutcome::varies_too_fast;
+      plan.percent = 99;
+      plan.ln_gamma = out_.distortion.p99;
+      plan.largest_ln_gamma = largest_agreeing_distortion;
+    } else if (is_wanted) {
+      plan.outcome = AgreementOutcome::done;
+    }
+    return plan;
   }
-  if (monitor.reason() != StopReason::finished) {
-    // the cells of a mesh that is not refined can reach across the whole domain
-    out.agreement = std::string("skipped: stopped by ") + name_of(monitor.reason());
-    return;
-  }
-  const bool agreeing =
-      !is_pure && (settings.agreement == AgreementMode::on ||
-                   (settings.agreement == AgreementMode::when_possible && can_agree));
-  if (agreeing) {
-    const AgreementCounts agreed =
-        agree(w, legaliser, monitor, Seed{settings.seed}, settings.threads);
+  AgreementCounts agree() {
+    const AgreementCounts counts = anistar::agree(w_, legaliser_, run_);
     // the flips after a move mind no quality
-    out.counts["bisections"] +=
-        static_cast<double>(bisect(w, legaliser, monitor, floor, settings.threads));
-    renumber(w, settings.threads);
-    out.counts["disagreeing_before"] = static_cast<double>(agreed.edges_before);
-    out.counts["disagreeing_after"] = static_cast<double>(agreed.edges_after);
-    out.counts["trials"] = static_cast<double>(agreed.trials);
-    out.counts["relocations"] = static_cast<double>(agreed.moves);
+    out_.counts["bisections"] +=
+        static_cast<double>(bisect(w_, legaliser_, run_.monitor, floor_, run_.threads));
+    renumber(w_, run_.threads);
+    return counts;
   }
-  const bool stopped = monitor.reason() != StopReason::finished;
-  out.agreement = agreeing && stopped
-                      ? std::string("stopped by ") + name_of(monitor.reason())
-                  : agreeing ? "done"
-                  : is_pure || settings.agreement == AgreementMode::off
-                      ? "off"
-                      : "skipped: the metric varies too fast, ln gamma of 1 % of "
-                        "the edges is above " +
-                            std::to_string(out.distortion.p99);
-  watch.phase("certificate");
-  StarCheck stars =
-      check_stars(w, monitor, Seed{settings.seed}, settings.threads, agreeing);
-  out.counts["star_failures"] = static_cast<double>(stars.failures);
-  out.counts["star_moves"] = static_cast<double>(stars.moves);
-  if (settings.consistency != ConsistencyMode::off) {
-    watch.phase("consistency");
-    out.consistency = refine_until_consistent(
-        w, legaliser, monitor, settings.parameters, Seed{settings.seed},
-        settings.threads, settings.consistency != ConsistencyMode::pure, stars);
+  [[nodiscard]] static bool is_certified(const RemeshSettings &settings,
+                                         const AgreementReport &agreement) {
+    return asks_for_stars(settings) &&
+           agreement.outcome != AgreementOutcome::stopped_before;
   }
-  out.was_checked = true;
-  out.simplex_ok = stars.simplex_ok;
-  out.star_ok = stars.star_ok;
+  [[nodiscard]] std::optional<DelaunayBits> certify() const {
+    return certify_all(w_.mesh, run_);
+  }
+  [[nodiscard]] static bool is_mended(const AgreementReport &agreement) {
+    return agreement.was_tried();
+  }
+  std::size_t mend(DelaunayBits &known) { return mend_stars(w_, run_, known); }
+  [[nodiscard]] ConsistencyCounts refine(const RemeshSettings &settings,
+                                         DelaunayBits &known) {
+    return refine_until_consistent(w_, legaliser_, run_, settings.parameters,
+                                   settings.consistency != ConsistencyMode::pure,
+                                   known);
+  }
+
+private:
+  Workspace &w_;
+  Legaliser &legaliser_;
+  const Run &run_;
+  const QualityFloor &floor_;
+  RemeshResult<2> &out_;
+
+  [[nodiscard]] static bool asks_for_stars(const RemeshSettings &settings) {
+    return settings.agreement != AgreementMode::off ||
+           settings.consistency != ConsistencyMode::off;
+  }
+};
+
+void take_counts(RemeshResult<2> &out) {
+  if (out.agreement.was_tried())
+    for (const auto &[name, value] :
+         {std::pair{"disagreeing_before", out.agreement.counts.before},
+          {"disagreeing_after", out.agreement.counts.after},
+          {"trials", out.agreement.counts.trials},
+          {"relocations", out.agreement.counts.moves}})
+      out.counts[name] = static_cast<double>(value);
+  if (out.stars.certified)
+    for (const auto &[name, value] : {std::pair{"star_failures", out.stars.failures},
+                                      {"star_moves", out.stars.moves}})
+      out.counts[name] = static_cast<double>(value);
 }
 
 /// Hands the arrays of the mesh over; the workspace is spent.
@@ -205,6 +236,7 @@ RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &inp
                        Monitor::Progress progress) {
   RemeshResult<2> out;
   Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
+  const Run run{monitor, settings.hausdorff, {settings.seed}, settings.threads};
   Stopwatch watch(monitor, out.seconds);
 
   watch.phase("curves");
@@ -233,7 +265,9 @@ RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &inp
     shape(w, legaliser, monitor, settings.threads, floor, out.counts);
   renumber(w, settings.threads);
 
-  certify_stars(w, legaliser, monitor, settings, floor, watch, out);
+  PlaneStars stars(w, legaliser, run, floor, out);
+  certify_stars(stars, run, settings, watch, out);
+  take_counts(out);
 
   watch.phase("report");
   out.statistics =

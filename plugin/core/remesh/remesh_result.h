@@ -3,12 +3,21 @@
 
 #include "base/monitor.h"
 #include "mesh/statistics.h"
+#include "stars/agreement.h"
 #include "stars/rules.h"
 
 #include <map>
+#include <optional>
 #include <string>
 
 namespace anistar {
+
+/// What the certificate found, cell by cell and star by star.
+struct StarCounts {
+  std::size_t failures = 0;                    ///< cells that failed at first
+  std::size_t moves = 0;                       ///< of vertices, that mended some
+  std::optional<CertifiedFractions> certified; ///< in the end; none: not asked
+};
 
 /// The new mesh as flat arrays, and what happened.
 template <std::size_t d> struct RemeshResult {
@@ -20,9 +29,8 @@ template <std::size_t d> struct RemeshResult {
   Statistics statistics;
   double kept_quality = 0; ///< what no cell should be below (see kept_quality.h)
   DistortionQuantiles distortion;
-  bool was_checked = false;           ///< the certified fractions are known
-  double simplex_ok = 0, star_ok = 0; ///< certified fractions
-  std::string agreement;              ///< done, or why not
+  AgreementReport agreement;
+  StarCounts stars;
   ConsistencyCounts consistency;
   std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase

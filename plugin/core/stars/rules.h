@@ -98,4 +98,14 @@ certified_fractions(const Triangulation<d> &mesh,
           static_cast<double>(stars) / static_cast<double>(used)};
 }
 
+/// The part of the cells that is not Delaunay in the metrics of all its vertices.
+template <std::size_t d>
+[[nodiscard]] double failing_fraction(const Triangulation<d> &mesh,
+                                      const std::vector<std::uint8_t> &bits) {
+  std::size_t passing = 0;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    passing += mesh.is_alive(static_cast<Index>(c)) && bits[c] == all_vertices<d>;
+  return 1 - static_cast<double>(passing) / static_cast<double>(mesh.n_cells());
+}
+
 } // namespace anistar

@@ -2,7 +2,7 @@
 // Failures of the certificate that no test on one facet can see, and the loop that
 // mends them by moving vertices; for meshes of triangles and of tetrahedra.
 
-#include "base/monitor.h"
+#include "base/run.h"
 #include "stars/rules.h"
 
 #include <algorithm>
@@ -15,9 +15,7 @@ namespace anistar {
 template <std::size_t d> class StarFailures {
 public:
   explicit StarFailures(const Triangulation<d> &mesh)
-      : mesh_(mesh),
-        test_({mesh.vertices, mesh.cells, mesh.neighbours, mesh.constraints}),
-        seen_(mesh.cells.size(), 0) {}
+      : mesh_(mesh), test_(certified(mesh)), seen_(mesh.cells.size(), 0) {}
 
   /// As the certificate sees one cell now.
   [[nodiscard]] DelaunayTest<d> &test() { return test_; }
@@ -63,6 +61,9 @@ public:
             cells_.push_back(beyond.cell());
         }
   }
+
+  /// The first of them.
+  [[nodiscard]] std::span<const Index> star() const { return {cells_.data(), n_star_}; }
 
   /// In how many stars these cells are missing.
   [[nodiscard]] int count() {
@@ -128,39 +129,84 @@ template <std::size_t d>
   return cells;
 }
 
+/// Mends failing cells by moving one vertex for each.
+///
+/// @tparam Relocation knows the mesh of its dimension: `star(v)`, the cells of a star,
+/// and `relocate_where(v, radius, random, accept)`, which tries places ever further off
+/// where nothing that agreement knows is worse, asks accept() when v is there, and
+/// tells whether one was accepted; else v is where it was
+template <std::size_t d, class Relocation> class StarMender {
+public:
+  StarMender(const Triangulation<d> &mesh, Relocation &relocation, Seed seed)
+      : mesh_(mesh), relocation_(relocation), failures_(mesh), seed_(seed) {}
+
+  /// Moves the vertex inside the ball of a failing cell, one of its own or one across
+  /// its facets, such that fewer cells around fail. @returns whether it found a move.
+  bool mend(Index cell, int round) {
+    for (Index v : failures_.culprits(cell)) { // none when an earlier move mended it
+      failures_.surround(relocation_.star(v));
+      const int failing = failures_.count();
+      CounterRandom random(seed_, Stream::mend, v, round);
+      if (!relocation_.relocate_where(v, farthest, random, [&] {
+            return failures_.count_moved(v, failing) < failing;
+          }))
+        continue;
+      changed_.insert(changed_.end(), failures_.star().begin(), failures_.star().end());
+      failures_.forget();
+      return true;
+    }
+    return false;
+  }
+  void know(const DelaunayBits &known) { failures_.know(known.bits); }
+  /// Decides again for the cells that depend on those that have changed.
+  void renew(DelaunayBits &known) {
+    for (Index c : dependent_cells<d>(mesh_.neighbours, changed_, known.reach)) {
+      known.bits[c] = failures_.test().bits(c);
+      known.reach[c] = failures_.test().reach();
+    }
+    changed_.clear();
+  }
+
+private:
+  /// Metric distance up to which places are tried.
+  static constexpr double farthest = .3;
+
+  const Triangulation<d> &mesh_;
+  Relocation &relocation_;
+  StarFailures<d> failures_;
+  Seed seed_;
+  std::vector<Index> changed_; ///< cells
+};
+
 /// More failures than this part of the cells are no accidents of an agreeing mesh.
 inline constexpr double accidental = .005;
 
 /// Mends the failing cells one by one, round by round; hopeless when there are many.
-/// @param mender mend(cell, round) moves a vertex and tells whether it did,
-/// take_changed() are the cells that have changed since the last call, failures() is
-/// the StarFailures<d> of the mesh
+/// @param relocation see StarMender
 /// @returns the number of moves; `known` is true of the mesh again
-template <std::size_t d, class Mender>
-std::size_t mend_failures(const Triangulation<d> &mesh, Mender &mender,
-                          Monitor &monitor, DelaunayBits &known) {
+template <std::size_t d, class Relocation>
+std::size_t mend_failures(const Triangulation<d> &mesh, Relocation &relocation,
+                          const Run &run, DelaunayBits &known) {
   constexpr int max_rounds = 8;
   std::size_t moves = 0;
   std::vector<Index> failing = failing_cells(mesh, known.bits);
-  if (static_cast<double>(failing.size()) >
-      accidental * static_cast<double>(mesh.n_cells()))
+  if (failing.empty() || static_cast<double>(failing.size()) >
+                             accidental * static_cast<double>(mesh.n_cells()))
     return moves;
-  for (int round = 0; round < max_rounds && !failing.empty() &&
-                      monitor.look(double(round) / max_rounds);
-       ++round) {
+  StarMender<d, Relocation> mender(mesh, relocation, run.seed);
+  const auto go_on = [&](int round) {
+    return run.monitor.look(double(round) / max_rounds);
+  };
+  for (int round = 0; round < max_rounds && !failing.empty() && go_on(round); ++round) {
     std::size_t moved = 0;
-    mender.failures().know(known.bits);
+    mender.know(known);
     for (Index c : failing)
-      if (monitor.look(double(round) / max_rounds))
+      if (go_on(round))
         moved += mender.mend(c, round);
     if (moved == 0)
       break;
     moves += moved;
-    for (Index c :
-         dependent_cells<d>(mesh.neighbours, mender.take_changed(), known.reach)) {
-      known.bits[c] = mender.failures().test().bits(c);
-      known.reach[c] = mender.failures().test().reach();
-    }
+    mender.renew(known);
     failing = failing_cells(mesh, known.bits);
   }
   return moves;

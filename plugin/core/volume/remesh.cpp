@@ -1,14 +1,11 @@
 #include "volume/remesh.h"
 
 #include "base/stopwatch.h"
-#include "stars/star_mending.h"
+#include "remesh/star_phases.h"
 #include "volume/passes/shaping.h"
 #include "volume/stars/agreement.h"
 #include "volume/stars/consistency.h"
 #include "volume/stars/star_mending.h"
-
-#include <iomanip>
-#include <sstream>
 
 namespace anistar {
 namespace {
@@ -18,61 +15,77 @@ namespace {
 /// the second one is for 99 % of the edges.
 constexpr double largest_agreeing_p90 = .35, largest_agreeing_p99 = .6;
 
-std::string quotient(double value, double bound) {
-  std::ostringstream text;
-  text << std::setprecision(2) << value << " > " << bound;
-  return text.str();
-}
+/// What certify_stars needs of a mesh of tetrahedra, which was renumbered.
+class VolumeStars {
+public:
+  static constexpr std::size_t d = 3;
 
-/// Why there will be no agreement; empty when there will be.
-std::string reason_to_skip(const Volume &volume, const Monitor &monitor,
-                           const RemeshSettings &settings) {
-  if (settings.agreement == AgreementMode::off)
-    return "off";
-  if (monitor.reason() != StopReason::finished)
-    // the cells of a mesh that is not refined can reach across the whole domain
-    return std::string("skipped: stopped by ") + name_of(monitor.reason());
-  // it takes as long as all the rest, for a property that only some ask for
-  if (settings.agreement == AgreementMode::when_possible &&
-      settings.consistency == ConsistencyMode::off)
-    return "skipped: not asked for, and in 3D it takes as long as the remeshing";
-  const DistortionQuantiles gamma =
-      distortion_quantiles(volume.mesh.vertices, volume.mesh.cells, settings.threads);
-  const std::string too_fast = "skipped: the metric varies too fast, ln gamma ";
-  if (gamma.p90 > largest_agreeing_p90)
-    return too_fast + "p90 " + quotient(gamma.p90, largest_agreeing_p90);
-  if (gamma.p99 > largest_agreeing_p99)
-    return too_fast + "p99 " + quotient(gamma.p99, largest_agreeing_p99);
-  return "";
-}
+  VolumeStars(Volume &volume, const Run &run) : volume_(volume), run_(run) {}
 
-/// Phase 4, as far as the metric and the settings let it. @pre the mesh was renumbered.
-void agree(Volume &volume, Monitor &monitor, const RemeshSettings &settings,
-           VolumeResult &out) {
-  (void)monitor.look(0); // small meshes come here without a look at the clock
-  out.agreement = reason_to_skip(volume, monitor, settings);
-  if (!out.agreement.empty())
-    return;
-  const VolumeAgreementCounts agreed =
-      agree_volume(volume, monitor, settings.hausdorff.surface, Seed{settings.seed},
-                   settings.threads);
-  renumber(volume, settings.threads);
-  out.agreement = "done";
-  if (agreed.facets_after > 0)
-    out.agreement += std::string(", ") + name_of(agreed.stop) + " with " +
-                     std::to_string(agreed.facets_after) + " facets left";
-  for (const auto &[name, value] :
-       {std::pair{"disagreeing_before", agreed.facets_before},
-        {"disagreeing_after", agreed.facets_after},
-        {"trials", agreed.trials},
-        {"relocations", agreed.moves},
-        {"agreement_swaps", agreed.swaps},
-        {"agreement_insertions", agreed.reinsertions},
-        {"agreement_repairs", agreed.repairs},
-        {"polishes", agreed.polishes},
-        {"agreement_rounds", static_cast<std::size_t>(agreed.rounds)}})
-    out.counts[name] = static_cast<double>(value);
-}
+  [[nodiscard]] const Triangulation<3> &mesh() const { return volume_.mesh; }
+
+  [[nodiscard]] AgreementReport plan(const RemeshSettings &settings) const {
+    (void)run_.monitor.look(0); // small meshes come here without a look at the clock
+    AgreementReport plan;
+    if (settings.agreement == AgreementMode::off)
+      return plan;
+    if (run_.is_stopped()) {
+      // the cells of a mesh that is not refined can reach across the whole domain
+      plan.outcome = AgreementOutcome::stopped_before;
+      plan.stopped_by = run_.monitor.reason();
+      return plan;
+    }
+    // it takes as long as all the rest, for a property that only some ask for
+    if (settings.agreement == AgreementMode::when_possible &&
+        settings.consistency == ConsistencyMode::off) {
+      plan.outcome = AgreementOutcome::not_asked;
+      return plan;
+    }
+    const DistortionQuantiles gamma =
+        distortion_quantiles(mesh().vertices, mesh().cells, run_.threads);
+    plan.outcome = AgreementOutcome::varies_too_fast;
+    if (gamma.p90 > largest_agreeing_p90) {
+      plan.percent = 90;
+      plan.ln_gamma = gamma.p90;
+      plan.largest_ln_gamma = largest_agreeing_p90;
+    } else if (gamma.p99 > largest_agreeing_p99) {
+      plan.percent = 99;
+      plan.ln_gamma = gamma.p99;
+      plan.largest_ln_gamma = largest_agreeing_p99;
+    } else {
+      plan.outcome = AgreementOutcome::done;
+    }
+    return plan;
+  }
+  AgreementCounts agree() {
+    const AgreementCounts counts = anistar::agree(volume_, run_);
+    renumber(volume_, run_.threads);
+    return counts;
+  }
+  /// Where agreement or consistency was asked for, unless a budget has been spent: the
+  /// certificate takes longer than a pass.
+  [[nodiscard]] bool is_certified(const RemeshSettings &settings,
+                                  const AgreementReport &) const {
+    return !run_.is_stopped() && (settings.agreement == AgreementMode::on ||
+                                  settings.consistency != ConsistencyMode::off);
+  }
+  [[nodiscard]] std::optional<DelaunayBits> certify() const {
+    DelaunayBits known =
+        delaunay_bits<3>(certified(mesh()), run_.threads,
+                         [&](double fraction) { return run_.monitor.look(fraction); });
+    return run_.is_stopped() ? std::nullopt : std::optional(std::move(known));
+  }
+  [[nodiscard]] static bool is_mended(const AgreementReport &) { return true; }
+  std::size_t mend(DelaunayBits &known) { return mend_stars(volume_, run_, known); }
+  [[nodiscard]] ConsistencyCounts refine(const RemeshSettings &settings,
+                                         DelaunayBits &known) {
+    return refine_until_consistent(volume_, run_, settings.parameters, known);
+  }
+
+private:
+  Volume &volume_;
+  const Run &run_;
+};
 
 void extract_facets(const Volume &volume, VolumeResult &out) {
   const Triangulation<3> &mesh = volume.mesh;
@@ -115,36 +128,26 @@ void take_counts(const VolumeCounts &counts, VolumeResult &out) {
     out.counts[name] = static_cast<double>(value);
 }
 
-/// Phases 5 and 6 where agreement or consistency was asked for, unless a budget has
-/// been spent: the certificate takes longer than a pass. @pre the mesh was renumbered.
-void certify_stars(Volume &volume, Monitor &monitor, const RemeshSettings &settings,
-                   Stopwatch &watch, VolumeResult &out) {
-  const bool inserting = settings.consistency != ConsistencyMode::off;
-  if (monitor.reason() != StopReason::finished ||
-      (settings.agreement != AgreementMode::on && !inserting))
+void take_counts(const RemeshSettings &settings, VolumeResult &out) {
+  const AgreementCounts &agreed = out.agreement.counts;
+  if (out.agreement.was_tried())
+    for (const auto &[name, value] :
+         {std::pair{"disagreeing_before", agreed.before},
+          {"disagreeing_after", agreed.after},
+          {"trials", agreed.trials},
+          {"relocations", agreed.moves},
+          {"agreement_swaps", agreed.swaps},
+          {"agreement_insertions", agreed.reinsertions},
+          {"agreement_repairs", agreed.repairs},
+          {"polishes", agreed.polishes},
+          {"agreement_rounds", static_cast<std::size_t>(agreed.rounds)}})
+      out.counts[name] = static_cast<double>(value);
+  if (!out.stars.certified)
     return;
-  watch.phase("certificate");
-  DelaunayBits known =
-      delaunay_bits<3>(certified(volume.mesh), settings.threads,
-                       [&](double fraction) { return monitor.look(fraction); });
-  if (monitor.reason() != StopReason::finished)
-    return;
-  out.counts["star_failures"] =
-      static_cast<double>(failing_cells(volume.mesh, known.bits).size());
-  out.counts["star_moves"] = static_cast<double>(mend_stars(
-      volume, monitor, settings.hausdorff.surface, Seed{settings.seed}, known));
-  if (inserting) {
-    watch.phase("consistency");
-    out.consistency = refine_until_consistent(
-        volume, monitor, settings.parameters, settings.hausdorff.surface,
-        Seed{settings.seed}, settings.threads, known);
+  out.counts["star_failures"] = static_cast<double>(out.stars.failures);
+  out.counts["star_moves"] = static_cast<double>(out.stars.moves);
+  if (settings.consistency != ConsistencyMode::off)
     out.counts["consistency_moves"] = static_cast<double>(out.consistency.moves);
-  }
-  const CertifiedFractions fractions = certified_fractions(volume.mesh, known.bits);
-  out.was_checked = true;
-  out.simplex_ok = fractions.simplex_ok;
-  out.star_ok = fractions.star_ok;
-  renumber(volume, settings.threads);
 }
 
 /// The user's projection, each call of which may take long.
@@ -166,6 +169,7 @@ VolumeResult remesh_volume(const VolumeInput &input,
                            const RemeshSettings &settings, Monitor::Progress progress) {
   VolumeResult out;
   Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
+  const Run run{monitor, settings.hausdorff, {settings.seed}, settings.threads};
   Stopwatch watch(monitor, out.seconds);
 
   { // what the mesh is made with is freed before the report, which takes room too
@@ -177,9 +181,11 @@ VolumeResult remesh_volume(const VolumeInput &input,
         [&] { return make_volume(input, metric, background, geometry, project); },
         monitor, settings.hausdorff, Seed{settings.seed}, settings.threads, watch);
     Volume &volume = *shaping.volume;
-    watch.phase("agreement");
-    agree(volume, monitor, settings, out);
-    certify_stars(volume, monitor, settings, watch, out);
+    VolumeStars stars(volume, run);
+    certify_stars(stars, run, settings, watch, out);
+    if (out.stars.certified)
+      renumber(volume, run.threads);
+    take_counts(settings, out);
     watch.phase("report");
     out.kept_quality = shaping.kept;
     take_mesh(volume, out);

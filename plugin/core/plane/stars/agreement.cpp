@@ -63,11 +63,10 @@ private:
 
 class Agreement {
 public:
-  Agreement(Workspace &w, Legaliser &legaliser, Monitor &monitor, Seed seed,
-            int threads)
-      : w_(w), mesh_(w.mesh), legaliser_(legaliser), monitor_(monitor), seed_(seed),
-        threads_(threads), blocks_(mesh_.vertices.size()),
-        relocator_(w, legaliser, seed), work_(mesh_.vertices.size()) {}
+  Agreement(Workspace &w, Legaliser &legaliser, const Run &run)
+      : w_(w), mesh_(w.mesh), legaliser_(legaliser), run_(run),
+        blocks_(mesh_.vertices.size()), relocator_(w, legaliser, run.seed),
+        work_(mesh_.vertices.size()) {}
 
   AgreementCounts run() {
     scan();
@@ -87,9 +86,7 @@ private:
   Workspace &w_;
   Triangulation<2> &mesh_;
   Legaliser &legaliser_;
-  Monitor &monitor_;
-  Seed seed_;
-  int threads_;
+  const Run &run_;
   Blocks blocks_;
   AgreementCounts counts_;
   Relocator relocator_; ///< for what concerns more than one block
@@ -107,8 +104,10 @@ private:
       }
     } last{relocator_, move};
     const bool going = visit_in_blocks(
-        blocks_, vertices, threads_, monitor_, fraction,
-        [&] { return BlockRelocator(w_, legaliser_, seed_, move, counts_, listed); },
+        blocks_, vertices, run_.threads, run_.monitor, fraction,
+        [&] {
+          return BlockRelocator(w_, legaliser_, run_.seed, move, counts_, listed);
+        },
         last);
     counts_ += relocator_.take_counts();
     listed.back() = relocator_.take_listed();
@@ -124,7 +123,7 @@ private:
   /// The one search for disagreeing edges.
   void scan() {
     const auto edges = parallel_search<HalfFacet>(
-        mesh_.cells.size(), threads_, [&](std::size_t c, const auto &add) {
+        mesh_.cells.size(), run_.threads, [&](std::size_t c, const auto &add) {
           for (std::size_t i = 0; i < 3; ++i) {
             const HalfFacet edge(static_cast<Index>(c), i),
                 other = mesh_.opposite(edge);
@@ -133,7 +132,7 @@ private:
               add(edge);
           }
         });
-    counts_.edges_before = edges.size();
+    counts_.before = edges.size();
     for (HalfFacet edge : edges)
       for_quad(mesh_, edge, [&](Index v) { work_.add(v); });
   }
@@ -209,16 +208,15 @@ private:
       }
     }
     std::sort(left.begin(), left.end());
-    counts_.edges_after =
+    counts_.after =
         static_cast<std::size_t>(std::unique(left.begin(), left.end()) - left.begin());
   }
 };
 
 } // namespace
 
-AgreementCounts agree(Workspace &w, Legaliser &legaliser, Monitor &monitor, Seed seed,
-                      int threads) {
-  return Agreement(w, legaliser, monitor, seed, threads).run();
+AgreementCounts agree(Workspace &w, Legaliser &legaliser, const Run &run) {
+  return Agreement(w, legaliser, run).run();
 }
 
 } // namespace anistar

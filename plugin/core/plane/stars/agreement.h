@@ -1,5 +1,6 @@
 #pragma once
-// Phase 4: vertices are moved until the metrics of neighbours agree about every edge.
+// Agreement in the plane: vertices are moved until the metrics of neighbours agree
+// about every edge.
 
 #include "base/run.h"
 #include "plane/stars/relocator.h"
@@ -10,7 +11,6 @@ namespace anistar {
 /// number, then walks on the plateau while few are left. The set of vertices to visit
 /// is maintained, never searched for again. Vertices are moved in blocks, see
 /// mesh/blocks.h.
-AgreementCounts agree(Workspace &w, Legaliser &legaliser, Monitor &monitor, Seed seed,
-                      int threads);
+AgreementCounts agree(Workspace &w, Legaliser &legaliser, const Run &run);
 
 } // namespace anistar

@@ -5,6 +5,7 @@
 #include "plane/mesh/flips.h"
 #include "plane/mesh/protecting_ball.h"
 #include "plane/mesh/relocation.h"
+#include "stars/agreement.h"
 
 #include <optional>
 #include <utility>
@@ -14,19 +15,6 @@ namespace anistar {
 /// Passes over the vertices at disagreeing edges; the radius of the trial places grows
 /// from one to the next.
 inline constexpr int max_agreement_passes = 10;
-
-struct AgreementCounts {
-  std::size_t edges_before = 0, edges_after = 0; ///< on which four metrics disagree
-  std::size_t trials = 0, moves = 0;
-
-  AgreementCounts &operator+=(const AgreementCounts &other) {
-    edges_before += other.edges_before;
-    edges_after += other.edges_after;
-    trials += other.trials;
-    moves += other.moves;
-    return *this;
-  }
-};
 
 /// Moves vertices of a range of the mesh, one after another; an object to a thread.
 class Relocator {

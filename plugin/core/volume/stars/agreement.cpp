@@ -34,20 +34,19 @@ constexpr std::size_t calls_between_looks = 64;
 
 class VolumeAgreement {
 public:
-  VolumeAgreement(Volume &volume, Monitor &monitor, double hausdorff_number, Seed seed,
-                  int persistence)
-      : volume_(volume), mesh_(volume.mesh), monitor_(monitor), seed_(seed),
-        persistence_(persistence), state_(volume, hausdorff_number),
-        relocation_(state_), repair_(state_, monitor) {}
+  VolumeAgreement(Volume &volume, const Run &run, int persistence)
+      : volume_(volume), mesh_(volume.mesh), run_(run), persistence_(persistence),
+        state_(volume, run.hausdorff.surface), relocation_(state_),
+        repair_(state_, run.monitor) {}
 
-  VolumeAgreementCounts run(int threads) {
+  AgreementCounts run() {
     const std::uint32_t start = ++volume_.clock;
-    state_.margins.fill(threads);
+    state_.margins.fill(run_.threads);
     scan();
-    counts_.facets_before = failing_.size();
+    counts_.before = failing_.size();
     counts_.stop = reduce();
     polish(start);
-    counts_.facets_after = failing_.size();
+    counts_.after = failing_.size();
     counts_.trials = relocation_.trials();
     return counts_;
   }
@@ -55,20 +54,18 @@ public:
 private:
   Volume &volume_;
   const Triangulation<3> &mesh_;
-  Monitor &monitor_;
-  Seed seed_;
+  const Run &run_;
   int persistence_;
   AgreementState state_;
   VolumeRelocation relocation_;
   FacetRepair repair_;
   std::vector<HalfFacet> failing_; ///< each from its first cell, sorted
-  VolumeAgreementCounts counts_;
+  AgreementCounts counts_;
   std::size_t calls_ = 0;
 
   [[nodiscard]] bool go_on(double fraction) {
-    return ++calls_ % calls_between_looks == 0
-               ? monitor_.look(fraction)
-               : monitor_.reason() == StopReason::finished;
+    return ++calls_ % calls_between_looks == 0 ? run_.monitor.look(fraction)
+                                               : !run_.is_stopped();
   }
   [[nodiscard]] bool still_fails(HalfFacet h) {
     return mesh_.is_alive(h.cell()) && state_.margins.fails(h);
@@ -147,7 +144,7 @@ private:
       const HalfFacet h = failing_[k];
       if (!still_fails(h))
         continue;
-      CounterRandom random(seed_, Stream::repair_facet, h.code(), round);
+      CounterRandom random(run_.seed, Stream::repair_facet, h.code(), round);
       if (is_repairing)
         counts_.repairs += repair_.collapse_or_insert(h, random);
       else
@@ -198,11 +195,8 @@ private:
 
 } // namespace
 
-VolumeAgreementCounts agree_volume(Volume &volume, Monitor &monitor,
-                                   double hausdorff_number, Seed seed, int threads,
-                                   int persistence) {
-  return VolumeAgreement(volume, monitor, hausdorff_number, seed, persistence)
-      .run(threads);
+AgreementCounts agree(Volume &volume, const Run &run, int persistence) {
+  return VolumeAgreement(volume, run, persistence).run();
 }
 
 } // namespace anistar

@@ -1,9 +1,7 @@
 #include "volume/stars/consistency.h"
 
-#include "base/ellipse_sampler.h"
-#include "mesh/mesh_walk.h"
-#include "stars/bad_cells.h"
 #include "stars/algorithm_2.h"
+#include "stars/certify_all.h"
 #include "volume/mesh/shell.h"
 #include "volume/stars/agreement.h"
 #include "volume/stars/star_mending.h"
@@ -15,9 +13,8 @@
 namespace anistar {
 namespace {
 
-constexpr int max_rounds = 200;
 /// Rounds without fewer failing cells after which the run has stalled.
-constexpr int patience = 16, patience_with_last = 64;
+constexpr int usual_patience = 16, patience_with_last = 64;
 /// So many failing cells are the last ones: all facets may be in order then, and only
 /// the certificate shows which moves help. Rounds cost little.
 constexpr std::size_t last_failing = 20;
@@ -58,7 +55,7 @@ struct Effort {
 
 /// How the failing cells became fewer.
 struct Progress {
-  double failing;                         ///< part of the cells
+  double failing = 1;                     ///< part of the cells
   double before = 1;                      ///< in the round before
   double reference = 1;                   ///< when the count below was reset
   int since_best = 0;                     ///< rounds that brought nothing
@@ -84,48 +81,125 @@ struct Progress {
   }
 };
 
+/// The rounds of Algorithm 2, and the judge of Pick_valid.
 class Rounds {
 public:
-  Rounds(Volume &volume, Monitor &monitor, const ConsistencyParameters &parameters,
-         Seed seed, ConsistencyCounts &counts)
-      : volume_(volume), mesh_(volume.mesh), monitor_(monitor), parameters_(parameters),
-        seed_(seed), operator_(volume), insertion_(volume),
-        mover_(volume, insertion_, operator_, parameters.sigma_0), counts_(counts) {}
+  static constexpr std::size_t d = 3;
+  static constexpr int max_rounds = 200;
+  using Score = PointScore;
 
-  /// One change for each bad cell that shares no vertex with one treated before.
-  void treat(const std::vector<BadCell<3>> &bad, int round, const Effort &effort) {
-    touched_.assign(mesh_.vertices.size(), 0);
-    effort_ = effort;
-    for (std::size_t k = 0; k < bad.size(); ++k) {
-      const BadCell<3> &item = bad[k];
-      const double fraction = static_cast<double>(round) / max_rounds;
-      if (!monitor_.keep_going(volume_.n_vertices(), fraction) ||
-          (k % cells_between_looks == 0 && !monitor_.look(fraction)))
-        return;
-      if (mesh_.at(item.cell) == item.vertices &&
-          std::none_of(item.vertices.begin(), item.vertices.end(),
-                       [&](Index v) { return is_touched(v); }))
-        treat(item, round);
+  /// What a run must be able to return to.
+  struct Snapshot {
+    VolumeState state;
+    std::vector<Index> free_vertices;
+  };
+
+  Rounds(Volume &volume, const Run &run, const ConsistencyParameters &parameters,
+         const DelaunayBits &known)
+      : volume_(volume), mesh_(volume.mesh), run_(run), parameters_(parameters),
+        operator_(volume), insertion_(volume),
+        mover_(volume, insertion_, operator_, parameters.sigma_0) {
+    progress_.failing = progress_.reference = failing_fraction(mesh_, known.bits);
+  }
+
+  [[nodiscard]] const Triangulation<3> &mesh() const { return mesh_; }
+  [[nodiscard]] const Background<3> &background() const { return volume_.background; }
+  [[nodiscard]] std::size_t n_vertices() const { return volume_.n_vertices(); }
+  [[nodiscard]] int patience(std::size_t n_bad) const {
+    return n_bad <= last_failing ? patience_with_last : usual_patience;
+  }
+  [[nodiscard]] bool are_rules_everywhere() const { return false; }
+  [[nodiscard]] bool is_starting() const { return false; }
+  [[nodiscard]] int rounds_without_gain() const { return progress_.since_best; }
+  [[nodiscard]] Snapshot snapshot() const {
+    return {*volume_.data, volume_.free_vertices};
+  }
+  void restore(Snapshot &&from) {
+    static_cast<VolumeState &>(*volume_.data) = std::move(from.state);
+    volume_.free_vertices = std::move(from.free_vertices);
+  }
+  void note(double failing, double) { progress_.note(failing); }
+
+  void treat(const std::vector<BadCell<3>> &bad, ConsistencyCounts &counts,
+             DelaunayBits &known) {
+    const Run run = run_.in_round(counts.rounds + 1);
+    const std::uint32_t since = ++volume_.clock;
+    const bool agreeing = progress_.asks_for_agreement();
+    if (agreeing) {
+      progress_.since_agreement = 0;
+      counts.moves += agree(volume_, run, agreement_persistence).moves;
+    } else {
+      change_all(bad, counts);
     }
+    renew(since, fraction_of(counts), known);
+    if (agreeing || bad.size() <= last_failing)
+      counts.moves += mend_stars(volume_, run, known);
+  }
+
+  [[nodiscard]] bool starts_at_centre(Rule) const { return true; }
+  [[nodiscard]] bool is_enough(Rule, const Picked<3, PointScore> &) const {
+    return false;
+  }
+  [[nodiscard]] Judgement<PointScore> judge(const Vertex<3> &p, Index cell,
+                                            double radius) {
+    if (!insertion_.gather(p, std::array{cell}, {separation}))
+      return {};
+    const HalfFacet wall = insertion_.encroached();
+    if (wall.exists() && !effort_.is_stuck)
+      return {{}, wall};
+    return {insertion_.score(parameters_.sigma_0, radius), wall};
   }
 
 private:
   Volume &volume_;
   Triangulation<3> &mesh_;
-  Monitor &monitor_;
+  const Run &run_;
   const ConsistencyParameters &parameters_;
-  Seed seed_;
   CavityOperator operator_;
   VolumeInsertion insertion_;
   VertexMover mover_;
-  ConsistencyCounts &counts_;
+  Progress progress_;
   std::vector<std::uint8_t> touched_; ///< vertices where this round has made a change
   Effort effort_{};
   Shell shell_;
 
+  [[nodiscard]] static double fraction_of(const ConsistencyCounts &counts) {
+    return static_cast<double>(counts.rounds) / max_rounds;
+  }
+
+  /// One change for each bad cell that shares no vertex with one treated before.
+  void change_all(const std::vector<BadCell<3>> &bad, ConsistencyCounts &counts) {
+    touched_.assign(mesh_.vertices.size(), 0);
+    effort_ = progress_.effort(bad.size());
+    const double fraction = fraction_of(counts);
+    for (std::size_t k = 0; k < bad.size(); ++k) {
+      const BadCell<3> &item = bad[k];
+      if (!run_.monitor.keep_going(volume_.n_vertices(), fraction) ||
+          (k % cells_between_looks == 0 && !run_.monitor.look(fraction)))
+        return;
+      if (mesh_.at(item.cell) == item.vertices &&
+          std::none_of(item.vertices.begin(), item.vertices.end(),
+                       [&](Index v) { return is_touched(v); }))
+        change(item, counts);
+    }
+  }
+
+  /// Decides again where the mesh has changed since the clock showed `since`: all of
+  /// it, or the bits would be those of another mesh.
+  void renew(std::uint32_t since, double fraction, DelaunayBits &known) {
+    known.bits.resize(mesh_.cells.size(), 0);
+    known.reach.resize(mesh_.cells.size(), 0);
+    std::vector<Index> changed;
+    for (std::size_t c = 0; c < mesh_.cells.size(); ++c)
+      if (mesh_.is_alive(static_cast<Index>(c)) && volume_.cell_clock[c] >= since)
+        changed.push_back(static_cast<Index>(c));
+    renew_bits<3>(certified(mesh_),
+                  dependent_cells<3>(mesh_.neighbours, changed, known.reach),
+                  run_.threads, to_the_end(run_.monitor, fraction), known);
+  }
+
   [[nodiscard]] bool is_touched(Index v) const {
-    const std::size_t i = v;
-    return i >= touched_.size() || touched_[i] != 0;
+    return std::cmp_greater_equal(v, touched_.size()) || touched_[v] != 0;
   }
   void touch_link() {
     touched_.resize(mesh_.vertices.size(), 1);
@@ -133,19 +207,19 @@ private:
       touched_[v] = 1;
   }
 
-  void treat(const BadCell<3> &item, int round) {
+  void change(const BadCell<3> &item, ConsistencyCounts &counts) {
     if (!effort_.moves) {
-      (void)insert_for(item, round);
+      (void)insert_for(item, counts);
     } else if (!effort_.inserts_early) {
-      if (!move_any(item, round, 0))
-        (void)insert_for(item, round);
-    } else if (!move_any(item, round, -1) && !insert_for(item, round)) {
-      (void)move_any(item, round, 0);
+      if (!move_any(item, counts, 0))
+        (void)insert_for(item, counts);
+    } else if (!move_any(item, counts, -1) && !insert_for(item, counts)) {
+      (void)move_any(item, counts, 0);
     }
   }
 
   /// Moves one of the vertices of a bad cell, or of those across its facets.
-  bool move_any(const BadCell<3> &item, int round, int most_failing) {
+  bool move_any(const BadCell<3> &item, ConsistencyCounts &counts, int most_failing) {
     std::array<Index, 8> vertices;
     std::size_t n = 0;
     for (Index v : item.vertices)
@@ -156,9 +230,9 @@ private:
         vertices[n++] = mesh_.apex(beyond);
     for (std::size_t k = 0; k < n; ++k) {
       const Index v = vertices[k];
-      CounterRandom random(seed_, Stream::make_way, v, round);
+      CounterRandom random(run_.seed, Stream::make_way, v, counts.rounds);
       if (mover_.move(v, {effort_.trials, most_failing}, random)) {
-        ++counts_.moves;
+        ++counts.moves;
         touched_[v] = 1;
         touch_link();
         return true;
@@ -169,58 +243,24 @@ private:
 
   /// Pick_valid (Algorithm 3) and Insert (Algorithm 1), or the split of a wall that the
   /// point encroaches upon.
-  bool insert_for(const BadCell<3> &item, int round) {
-    if (!monitor_.has_room(volume_.n_vertices()))
+  bool insert_for(const BadCell<3> &item, ConsistencyCounts &counts) {
+    if (!run_.monitor.has_room(volume_.n_vertices()))
       return false;
-    HalfFacet wall;
-    const ScoredPoint best = pick_valid(item, round, wall);
-    if (best.seed == none || effort_.is_stuck)
-      if (wall.exists() && split(wall))
+    const CounterRandom random(run_.seed, Stream::pick, item.cell, counts.rounds);
+    const auto [best, wall] =
+        pick_valid<3>(mesh_, volume_.background, item, parameters_, random, *this);
+    if (!best.exists() || effort_.is_stuck)
+      if (wall.exists() && split(wall, counts))
         return true;
-    if (best.seed == none || best.score.failing > effort_.allowance ||
+    if (!best.exists() || best.score.failing > effort_.allowance ||
         !insertion_.gather(best.p, std::array{best.seed}, {separation}))
       return false;
     const Index v =
         volume_.add_vertex(best.p, Triangulation<3>::interior, none, best.background);
     if (!enter(v, {none, none}))
       return false;
-    counts_.add(item.rule);
+    counts.add(item.rule);
     return true;
-  }
-
-  /// The best of the circumcentre and random points of the picking region.
-  /// @param wall a constrained facet that one of them encroaches upon
-  [[nodiscard]] ScoredPoint pick_valid(const BadCell<3> &item, int round,
-                                       HalfFacet &wall) {
-    const SymmetricTensor<3> M = mesh_.vertex(item.star).M;
-    const Circumsphere<3> ball = circumsphere<3>(M, mesh_.simplex(item.cell));
-    const EllipseSampler<3> ellipse(M);
-    CounterRandom random(seed_, Stream::pick, item.cell, round);
-    ScoredPoint best;
-    for (int k = 0; k < parameters_.candidates; ++k) {
-      Vector<3> x = ball.centre;
-      if (k > 0)
-        x += ellipse.step(parameters_.delta * ball.radius, random);
-      const Walk at = walk_to(mesh_, item.cell, x);
-      if (at.wall.exists())
-        wall = at.wall;
-      if (at.cell == none)
-        continue;
-      ScoredPoint found{{}, {}, at.cell, mesh_.background_cell[item.star]};
-      found.p = volume_.background.vertex(x, found.background);
-      if (!insertion_.gather(found.p, std::array{at.cell}, {separation}))
-        continue;
-      if (const HalfFacet near = insertion_.encroached(); near.exists()) {
-        wall = near;
-        if (!effort_.is_stuck)
-          continue;
-      }
-      found.score =
-          insertion_.score(parameters_.sigma_0, parameters_.beta * ball.radius);
-      if (found.score.is_better(best.score))
-        best = found;
-    }
-    return best;
   }
 
   /// Replaces the cavity that was gathered by the star of a new vertex.
@@ -234,7 +274,7 @@ private:
   }
 
   /// Splits the longest edge of a wall, at the best of some of its points.
-  bool split(HalfFacet wall) {
+  bool split(HalfFacet wall, ConsistencyCounts &counts) {
     const Facet<3> t = mesh_.facet(wall);
     Index a = none, b = none;
     double longest = shortest_split;
@@ -251,8 +291,8 @@ private:
     const EdgeFeature feature = feature_of(volume_, shell_);
     if (feature.is_frozen)
       return false;
-    const ScoredPoint best = best_on_edge(feature);
-    if (best.seed == none || best.score.failing > effort_.allowance ||
+    const ScoredPlace best = best_on_edge(feature);
+    if (!best.exists() || best.score.failing > effort_.allowance ||
         !insertion_.gather(best.p, shell_.all(), {separation, {a, b}}))
       return false;
     const Index v =
@@ -261,16 +301,16 @@ private:
       return false;
     if (feature.ridge != none)
       volume_.ridges.split(a, b, v);
-    ++counts_.boundary;
+    ++counts.boundary;
     return true;
   }
 
-  [[nodiscard]] ScoredPoint best_on_edge(const EdgeFeature &feature) {
+  [[nodiscard]] ScoredPlace best_on_edge(const EdgeFeature &feature) {
     const Vector<3> &a = mesh_.vertex(shell_.a).x, &b = mesh_.vertex(shell_.b).x;
-    ScoredPoint best;
+    ScoredPlace best;
     for (int k = 0; k < edge_candidates; ++k) {
       const double s = .5 + edge_part * (double(k) / (edge_candidates - 1) - .5);
-      ScoredPoint found{{}, {}, shell_.cells[0], mesh_.background_cell[shell_.a]};
+      ScoredPlace found{{}, {}, shell_.cells[0], mesh_.background_cell[shell_.a]};
       found.p = volume_.background.vertex(
           volume_.surface.place(feature.dimension, feature.lies_on, a + s * (b - a)),
           found.background);
@@ -285,97 +325,13 @@ private:
   }
 };
 
-[[nodiscard]] double failing_fraction(const Triangulation<3> &mesh,
-                                      const std::vector<std::uint8_t> &bits) {
-  return 1 - certified_fractions(mesh, bits).simplex_ok;
-}
-
-/// What a run must be able to return to.
-struct Snapshot {
-  Snapshot(const Volume &volume, const DelaunayBits &bits, double fraction)
-      : state(*volume.data), free_vertices(volume.free_vertices), known(bits),
-        failing(fraction) {}
-
-  VolumeState state;
-  std::vector<Index> free_vertices;
-  DelaunayBits known;
-  double failing;
-};
-
-void restore(Volume &volume, Snapshot &&from) {
-  static_cast<VolumeState &>(*volume.data) = std::move(from.state);
-  volume.free_vertices = std::move(from.free_vertices);
-}
-
-/// Decides again where the mesh has changed since the clock showed `since`.
-void renew(const Volume &volume, std::uint32_t since, int threads, const Look &look,
-           DelaunayBits &known) {
-  const Triangulation<3> &mesh = volume.mesh;
-  known.bits.resize(mesh.cells.size(), 0);
-  known.reach.resize(mesh.cells.size(), 0);
-  std::vector<Index> changed;
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
-    if (mesh.is_alive(static_cast<Index>(c)) && volume.cell_clock[c] >= since)
-      changed.push_back(static_cast<Index>(c));
-  renew_bits<3>(certified(mesh),
-                dependent_cells<3>(mesh.neighbours, changed, known.reach), threads,
-                look, known);
-}
-
 } // namespace
 
-ConsistencyCounts refine_until_consistent(Volume &volume, Monitor &monitor,
+ConsistencyCounts refine_until_consistent(Volume &volume, const Run &run,
                                           const ConsistencyParameters &parameters,
-                                          double hausdorff_number, Seed seed,
-                                          int threads, DelaunayBits &known) {
-  ConsistencyCounts counts;
-  Rounds rounds(volume, monitor, parameters, seed, counts);
-  RoundBounds bounds{max_rounds, patience,
-                     (1 + parameters.max_growth) *
-                         static_cast<double>(volume.n_vertices())};
-  Progress progress{failing_fraction(volume.mesh, known.bits)};
-  progress.reference = progress.failing;
-  std::optional<Snapshot> best(std::in_place, volume, known, progress.failing);
-  for (counts.rounds = 0;; ++counts.rounds) {
-    const std::vector<BadCell<3>> bad =
-        bad_cells<3>(volume.mesh, volume.background, known.bits, parameters, false);
-    const bool are_last = bad.size() <= last_failing;
-    bounds.patience = are_last ? patience_with_last : patience;
-    counts.stop = bounds.stop(bad.empty(), counts.rounds, progress.since_best,
-                              volume.n_vertices(), monitor);
-    if (!counts.stop.empty())
-      break;
-    const std::uint32_t since = ++volume.clock;
-    const Seed round_seed{seed.value, static_cast<std::uint32_t>(counts.rounds) + 1};
-    const bool agreeing = progress.asks_for_agreement();
-    if (agreeing) {
-      progress.since_agreement = 0;
-      counts.moves += agree_volume(volume, monitor, hausdorff_number, round_seed,
-                                   threads, agreement_persistence)
-                          .moves;
-    } else {
-      rounds.treat(bad, counts.rounds, progress.effort(bad.size()));
-    }
-    // all of it, or the bits would be those of another mesh
-    renew(
-        volume, since, threads,
-        [&](double) {
-          (void)monitor.look(double(counts.rounds) / max_rounds);
-          return true;
-        },
-        known);
-    if (agreeing || are_last)
-      counts.moves += mend_stars(volume, monitor, hausdorff_number, round_seed, known);
-    progress.note(failing_fraction(volume.mesh, known.bits));
-    if (progress.failing < best->failing)
-      best.emplace(volume, known, progress.failing);
-  }
-  if (progress.failing > best->failing) {
-    known = std::move(best->known);
-    restore(volume, std::move(*best));
-  }
-  counts.ln_gamma_p90 = ln_gamma_p90(volume.mesh, known.bits);
-  return counts;
+                                          DelaunayBits &known) {
+  Rounds rounds(volume, run, parameters, known);
+  return insert_until_consistent(rounds, run, parameters, known);
 }
 
 } // namespace anistar

@@ -2,6 +2,7 @@
 // Points that enter a volume mesh by their metric-Delaunay cavity: Algorithm 1 of
 // RR-7712 v2 on one valid mesh, and what pick_valid (Algorithm 3) asks of a point.
 
+#include "stars/algorithm_2.h"
 #include "volume/mesh/cavity_operator.h"
 #include "volume/stars/facet_margins.h"
 
@@ -28,13 +29,7 @@ struct EntryRule {
   Index vertex = none; ///< that it moves; all its cells are among the seeds
 };
 
-/// A point, what it would bring, and where it was looked for.
-struct ScoredPoint {
-  PointScore score;
-  Vertex<3> p{};
-  Index seed = none;       ///< a cell of its cavity
-  Index background = none; ///< where its metric was found
-};
+using ScoredPlace = ScoredPoint<3, PointScore>;
 
 /// The cavity of one point after another.
 class VolumeInsertion {

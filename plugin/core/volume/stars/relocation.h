@@ -32,6 +32,11 @@ public:
   explicit VolumeRelocation(AgreementState &state)
       : state_(state), volume_(state.volume) {}
 
+  /// The cells of the star of v.
+  [[nodiscard]] std::span<const Index> star(Index v) {
+    star_of(volume_, v, star_);
+    return star_;
+  }
   /// Random places within this metric distance; @returns whether one is better by
   /// AgreementCost and lengths.
   bool relocate(Index v, double radius, CounterRandom &random);

@@ -21,8 +21,8 @@ bool VertexMover::move(Index v, const MoveDemand &demand, CounterRandom &random)
   star_of(volume_, v, star_);
   if (!is_free(v))
     return false;
-  const ScoredPoint best = best_place(v, demand.trials, random);
-  if (best.seed == none || best.score.failing > demand.most_failing ||
+  const ScoredPlace best = best_place(v, demand.trials, random);
+  if (!best.exists() || best.score.failing > demand.most_failing ||
       best.score.cost > -least_gain ||
       !insertion_.gather(best.p, star_, {shortest, {none, none}, v}))
     return false;
@@ -57,14 +57,14 @@ bool VertexMover::is_free(Index v) const {
   return true;
 }
 
-ScoredPoint VertexMover::best_place(Index v, int trials, CounterRandom &random) {
+ScoredPlace VertexMover::best_place(Index v, int trials, CounterRandom &random) {
   const Vertex<3> &here = volume_.mesh.vertex(v);
   const EllipseSampler<3> ellipse(here.M);
-  ScoredPoint best;
+  ScoredPlace best;
   const auto consider = [&](const Vector<3> &x) {
     if (!is_in_range<3>(x))
       return;
-    ScoredPoint found{{}, {}, star_.front(), volume_.mesh.background_cell[v]};
+    ScoredPlace found{{}, {}, star_.front(), volume_.mesh.background_cell[v]};
     found.p = volume_.background.vertex(x, found.background);
     if (!insertion_.gather(found.p, star_, {shortest, {none, none}, v}))
       return;

@@ -34,7 +34,7 @@ private:
   std::vector<Index> star_;
 
   [[nodiscard]] bool is_free(Index v) const;
-  [[nodiscard]] ScoredPoint best_place(Index v, int trials, CounterRandom &random);
+  [[nodiscard]] ScoredPlace best_place(Index v, int trials, CounterRandom &random);
 };
 
 } // namespace anistar

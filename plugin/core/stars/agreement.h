@@ -1,0 +1,72 @@
+#pragma once
+// What agreement does and what became of it, for meshes of triangles and tetrahedra:
+// the mesh is changed until the metrics of neighbours agree about every facet.
+
+#include "base/monitor.h"
+
+#include <cstddef>
+
+namespace anistar {
+
+/// Why the rounds of agreement ended.
+enum class AgreementStop { agreed, stalled, rounds, trials, interrupted };
+
+[[nodiscard]] inline const char *name_of(AgreementStop stop) {
+  switch (stop) {
+  case AgreementStop::agreed:
+    return "agreed";
+  case AgreementStop::stalled:
+    return "stalled";
+  case AgreementStop::rounds:
+    return "too many rounds";
+  case AgreementStop::trials:
+    return "too many trials";
+  case AgreementStop::interrupted:
+    return "interrupted";
+  }
+  return "unknown";
+}
+
+struct AgreementCounts {
+  /// Facets on which metrics disagree: in the plane edges, by the metrics of four
+  /// vertices, in space triangles, by those of five.
+  std::size_t before = 0, after = 0;
+  std::size_t trials = 0, moves = 0;
+  // in space only
+  std::size_t swaps = 0, reinsertions = 0, repairs = 0, polishes = 0;
+  int rounds = 0;
+  AgreementStop stop = AgreementStop::agreed;
+
+  AgreementCounts &operator+=(const AgreementCounts &other) {
+    before += other.before;
+    after += other.after;
+    trials += other.trials;
+    moves += other.moves;
+    return *this;
+  }
+};
+
+/// What became of agreement. Those before `stopped` left the mesh as it was.
+enum class AgreementOutcome {
+  off,             ///< not wanted
+  not_asked,       ///< it takes too long to be done unasked
+  stopped_before,  ///< a budget had been spent
+  varies_too_fast, ///< the metric, see ln_gamma
+  stopped,         ///< by a budget
+  done
+};
+
+struct AgreementReport {
+  AgreementOutcome outcome = AgreementOutcome::off;
+  AgreementCounts counts;
+  StopReason stopped_by = StopReason::finished;
+  /// What forbade it: this quantile of the distortion, and its bound.
+  int percent = 0;
+  double ln_gamma = 0, largest_ln_gamma = 0;
+
+  [[nodiscard]] bool was_tried() const {
+    return outcome == AgreementOutcome::stopped || outcome == AgreementOutcome::done;
+  }
+};
+
+} // namespace anistar
