@@ -1,4 +1,4 @@
-#include "bind.h"
+#include "bindings/bind.h"
 
 NB_MODULE(_core, module) {
   module.doc() = "The compiled core of anistar.";

@@ -1,7 +1,7 @@
 #include "certificate/certify.h"
-#include "bind.h"
+#include "bindings/bind.h"
+#include "bindings/support/geometry.h"
 #include "certificate/facet_test.h"
-#include "geometry.h"
 
 namespace anistar::bindings {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // What the remeshers of both dimensions return.
 
-#include "arrays.h"
+#include "bindings/support/arrays.h"
 #include "remesh/remesh_result.h"
 
 namespace anistar::bindings {

@@ -1,6 +1,6 @@
 #include "search/nearest.h"
-#include "bind.h"
-#include "geometry.h"
+#include "bindings/bind.h"
+#include "bindings/support/geometry.h"
 #include "search/nearest_facet.h"
 
 #include <nanobind/stl/pair.h>

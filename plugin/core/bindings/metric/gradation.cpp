@@ -1,6 +1,6 @@
 #include "metric/gradation.h"
-#include "arrays.h"
-#include "interrupt.h"
+#include "bindings/support/arrays.h"
+#include "bindings/support/interrupt.h"
 
 #include <nanobind/stl/string.h>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 #include "search/facet_pairs.h"
-#include "bind.h"
-#include "geometry.h"
+#include "bindings/bind.h"
+#include "bindings/support/geometry.h"
 
 namespace anistar::bindings {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 // NumPy arrays as spans of the core's points and cells.
 
-#include "arrays.h"
 #include "base/tensor.h"
+#include "bindings/support/arrays.h"
 #include "mesh/adjacency.h"
 
 #include <cstring>

@@ -1,7 +1,7 @@
 #include "transfer/symmetric_system.h"
-#include "bind.h"
-#include "geometry.h"
-#include "interrupt.h"
+#include "bindings/bind.h"
+#include "bindings/support/geometry.h"
+#include "bindings/support/interrupt.h"
 
 namespace anistar::bindings {
 namespace {

@@ -1,5 +1,5 @@
 #include "mesh/vertex_graph.h"
-#include "arrays.h"
+#include "bindings/support/arrays.h"
 
 #include <stdexcept>
 #include <string>

@@ -1,6 +1,6 @@
 #include "search/locator.h"
-#include "bind.h"
-#include "geometry.h"
+#include "bindings/bind.h"
+#include "bindings/support/geometry.h"
 
 #include <nanobind/stl/tuple.h>
 

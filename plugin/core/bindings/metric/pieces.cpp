@@ -1,6 +1,6 @@
 #include "metric/pieces.h"
-#include "bind.h"
-#include "geometry.h"
+#include "bindings/bind.h"
+#include "bindings/support/geometry.h"
 
 #include <nanobind/stl/pair.h>
 

@@ -1,6 +1,6 @@
-#include "report.h"
+#include "bindings/remesh/report.h"
 
-#include "geometry.h"
+#include "bindings/support/geometry.h"
 #include "remesh/agreement_text.h"
 
 #include <nanobind/stl/map.h>

@@ -1,8 +1,8 @@
 #pragma once
 // What the remeshers of both dimensions are told.
 
-#include "arrays.h"
 #include "base/monitor.h"
+#include "bindings/support/arrays.h"
 #include "remesh/domain_shape.h"
 #include "remesh/remesh_settings.h"
 

@@ -1,7 +1,7 @@
 #include "plane/geometry/facet_shapes.h"
-#include "bind.h"
-#include "geometry.h"
-#include "settings.h"
+#include "bindings/bind.h"
+#include "bindings/remesh/settings.h"
+#include "bindings/support/geometry.h"
 #include "surface/facet_shapes.h"
 
 #include <nanobind/stl/tuple.h>

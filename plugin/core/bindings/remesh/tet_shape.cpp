@@ -1,5 +1,5 @@
-#include "bind.h"
-#include "geometry.h"
+#include "bindings/bind.h"
+#include "bindings/support/geometry.h"
 #include "volume/mesh/densest_shapes.h"
 
 namespace anistar::bindings {

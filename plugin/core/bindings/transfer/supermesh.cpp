@@ -1,6 +1,6 @@
 #include "transfer/supermesh.h"
-#include "bind.h"
-#include "geometry.h"
+#include "bindings/bind.h"
+#include "bindings/support/geometry.h"
 
 #include <limits>
 

@@ -1,8 +1,8 @@
 #include "plane/remesh.h"
-#include "bind.h"
-#include "geometry.h"
-#include "report.h"
-#include "settings.h"
+#include "bindings/bind.h"
+#include "bindings/remesh/report.h"
+#include "bindings/remesh/settings.h"
+#include "bindings/support/geometry.h"
 
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/pair.h>

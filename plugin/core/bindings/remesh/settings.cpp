@@ -1,4 +1,4 @@
-#include "settings.h"
+#include "bindings/remesh/settings.h"
 
 #include <nanobind/stl/string.h>
 

@@ -1,7 +1,7 @@
-#include "bind.h"
-#include "geometry.h"
-#include "report.h"
-#include "settings.h"
+#include "bindings/bind.h"
+#include "bindings/remesh/report.h"
+#include "bindings/remesh/settings.h"
+#include "bindings/support/geometry.h"
 #include "volume/remesh.h"
 
 #include <nanobind/stl/string.h>

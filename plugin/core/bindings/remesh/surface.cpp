@@ -1,5 +1,5 @@
-#include "bind.h"
-#include "geometry.h"
+#include "bindings/bind.h"
+#include "bindings/support/geometry.h"
 #include "surface/smooth_surface.h"
 
 #include <nanobind/stl/optional.h>

@@ -1,6 +1,6 @@
 #include "base/elementary.h"
-#include "arrays.h"
-#include "bind.h"
+#include "bindings/bind.h"
+#include "bindings/support/arrays.h"
 
 #include <algorithm>
 #include <stdexcept>
