@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from anistar.mesh import Mesh
+from anistar import Mesh
 
 SIDES = {(1, 1): "bottom", (1, 2): "right", (1, 3): "top", (1, 4): "left"}
 

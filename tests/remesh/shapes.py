@@ -3,7 +3,7 @@
 import numpy as np
 from elementary_inputs import cos, sin, tanh
 
-from anistar.mesh import Mesh
+from anistar import Mesh
 from anistar.metric import complexity, graded, normalised
 
 

@@ -11,8 +11,7 @@ import pytest
 from meshes import l_shape, slit, square, two_regions
 from shapes import arc_metric, rotating_metric, target, uniform
 
-from anistar.remesh import remesh
-from anistar.validation import validate
+from anistar import remesh, validate
 
 FOLDER = Path(__file__).parent / "golden"
 

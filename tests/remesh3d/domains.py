@@ -4,7 +4,7 @@ import numpy as np
 from elementary_inputs import cos, rotated_by, sin
 from meshes import cube, two_region_cube
 
-from anistar.mesh import Mesh
+from anistar import Mesh
 
 
 def uniform(mesh, h):

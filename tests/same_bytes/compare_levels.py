@@ -11,7 +11,7 @@ from pathlib import Path
 
 from cpu_levels import Level, blas_levels, libm_levels, output_at, simd_levels
 
-RESULTS = Path(__file__).with_name("result_digests.py")
+RESULTS = Path(__file__).with_name("printed_digests.py")
 
 
 def main():

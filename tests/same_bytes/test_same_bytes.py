@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from cpu_levels import Level, libm_levels, output_at, simd_levels
 
-RESULTS = Path(__file__).with_name("result_digests.py")
+RESULTS = Path(__file__).with_name("printed_digests.py")
 
 
 def made_at(level):
