@@ -115,6 +115,8 @@ def main(arguments: list[str] | None = None) -> int:
     if chosen.command == "compare":
         return compare(chosen.before, chosen.after)
     if chosen.command == "against":
+        if not (chosen.site / "anistar").is_dir():  # else the version imported meets itself
+            parser.error(f"{chosen.site} has no installed anistar")
         return against(chosen.site, quick=chosen.quick)
     write(chosen.file, quick=chosen.quick)
     return 0

@@ -72,6 +72,12 @@ def test_the_exit_status_says_whether_files_differ(tmp_path, capsys):
     assert "disc: arrays differ: mesh.cells\n1 cases, 1 differ" in capsys.readouterr().out
 
 
+def test_a_folder_without_anistar_is_refused(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        SCRIPT["main"](["against", str(tmp_path)])
+    assert "has no installed anistar" in capsys.readouterr().err
+
+
 @pytest.fixture(scope="module")
 def writer():
     with pytest.MonkeyPatch.context() as patch:
