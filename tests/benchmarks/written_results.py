@@ -23,17 +23,23 @@ def written(results: Results) -> dict[str, dict[str, Any]]:
     """Return the digest of each array and each figure of the reports."""
     arrays: dict[str, str] = {}
     figures: dict[str, Any] = {}
-    for name, result in results.items():
+    for name, result in with_meshes_apart(results):
         if isinstance(result, str):
             arrays[name] = result
         elif isinstance(result, np.ndarray):
             arrays[name] = digest(result)
-        elif isinstance(result, Mesh):
-            parts = result.arrays().items()
-            arrays |= {f"{name}.{part}": digest(array) for part, array in parts}
         else:
             figures |= dict(leaves(name, result))
     return {"arrays": arrays, "figures": figures}
+
+
+def with_meshes_apart(results: Results) -> Iterator[tuple[str, Any]]:
+    """Yield the results by name, of a mesh its arrays and the names of its tags."""
+    for name, result in results.items():
+        if isinstance(result, Mesh):
+            yield from ((f"{name}.{part}", value) for part, value in result.arrays().items())
+        else:
+            yield name, result
 
 
 def leaves(name: str, value: Any) -> Iterator[tuple[str, Any]]:
