@@ -83,48 +83,45 @@ struct Start {
 
 /// A first mesh, on curves that are cut to unit edges or, where a budget does not allow
 /// that, at points of the geometry.
-Start make_start(Geometry &geometry, const Background<2> &background, double hausdorff,
-                 Monitor &monitor, Stopwatch &watch) {
+Start make_start(Geometry &geometry, const Background<2> &background, const Run &run,
+                 Stopwatch &watch) {
   try {
-    Outline outline = make_outline(geometry, background, hausdorff, monitor);
+    Outline outline = make_outline(geometry, background, run);
     const std::size_t n_sharp = outline.n_balls + outline.n_unprotected;
     watch.phase("size");
     return {triangulate(geometry, background, std::move(outline),
-                        [&] { monitor.insist(0); }),
+                        [&] { run.monitor.insist(0); }),
             n_sharp, true};
   } catch (const BudgetSpent &) {
     watch.phase("size");
     // the user may still interrupt this; a budget has nothing less to fall back upon
     return {triangulate(geometry, background,
-                        outline_at_points(geometry, background, hausdorff, monitor),
-                        [&] { (void)monitor.keep_going(0, 0); }),
+                        outline_at_points(geometry, background, run),
+                        [&] { (void)run.monitor.keep_going(0, 0); }),
             0, false};
   }
 }
 
-void shape(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads,
-           const QualityFloor &floor, std::map<std::string, double> &counts) {
+void shape(Workspace &w, const Run &run, const QualityFloor &floor,
+           std::map<std::string, double> &counts) {
   const auto control = [&](double shortest, double longest) {
-    const LengthCounts done =
-        control_lengths(w, legaliser, monitor, shortest, longest, threads);
+    const LengthCounts done = control_lengths(w, run, {shortest, longest});
     counts["splits"] += static_cast<double>(done.splits);
     counts["collapses"] += static_cast<double>(done.collapses);
   };
   for (const Round &round : schedule) {
     for (int k = 0; k < round.pliant_sweeps; ++k)
-      smooth(w, legaliser, monitor, Target::unit_edges, threads);
+      smooth(w, run, Target::unit_edges);
     for (int k = 0; k < round.odt_sweeps; ++k)
-      smooth(w, legaliser, monitor, Target::odt, threads);
+      smooth(w, run, Target::odt);
     if (round.longest > 0) {
       control(round.shortest, round.longest);
-      renumber(w, threads); // the new vertices into the blocks where they lie
+      renumber(w, run.threads); // the new vertices into the blocks where they lie
     }
   }
   control(shortest_outlier, longest_outlier);
-  counts["poor"] =
-      static_cast<double>(repair(w, monitor, {{repair_floor, repair_floor}}, threads));
-  counts["bisections"] =
-      static_cast<double>(bisect(w, legaliser, monitor, floor, threads));
+  counts["poor"] = static_cast<double>(repair(w, run, {{repair_floor, repair_floor}}));
+  counts["bisections"] = static_cast<double>(bisect(w, run, floor));
 }
 
 /// What certify_stars needs of a mesh of triangles.
@@ -132,9 +129,9 @@ class PlaneStars {
 public:
   static constexpr std::size_t d = 2;
 
-  PlaneStars(Workspace &w, Legaliser &legaliser, const Run &run,
-             const QualityFloor &floor, RemeshResult<2> &out)
-      : w_(w), legaliser_(legaliser), run_(run), floor_(floor), out_(out) {}
+  PlaneStars(Workspace &w, const Run &run, const QualityFloor &floor,
+             RemeshResult<2> &out)
+      : w_(w), run_(run), floor_(floor), out_(out) {}
 
   [[nodiscard]] const Triangulation<2> &mesh() const { return w_.mesh; }
 
@@ -160,10 +157,9 @@ public:
     return plan;
   }
   AgreementCounts agree() {
-    const AgreementCounts counts = anistar::agree(w_, legaliser_, run_);
+    const AgreementCounts counts = anistar::agree(w_, run_);
     // the flips after a move mind no quality
-    out_.counts["bisections"] +=
-        static_cast<double>(bisect(w_, legaliser_, run_.monitor, floor_, run_.threads));
+    out_.counts["bisections"] += static_cast<double>(bisect(w_, run_, floor_));
     renumber(w_, run_.threads);
     return counts;
   }
@@ -181,14 +177,13 @@ public:
   std::size_t mend(DelaunayBits &known) { return mend_stars(w_, run_, known); }
   [[nodiscard]] ConsistencyCounts refine(const RemeshSettings &settings,
                                          DelaunayBits &known) {
-    return refine_until_consistent(w_, legaliser_, run_, settings.parameters,
+    return refine_until_consistent(w_, run_, settings.parameters,
                                    settings.consistency != ConsistencyMode::pure,
                                    known);
   }
 
 private:
   Workspace &w_;
-  Legaliser &legaliser_;
   const Run &run_;
   const QualityFloor &floor_;
   RemeshResult<2> &out_;
@@ -236,51 +231,50 @@ RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &inp
                        Monitor::Progress progress) {
   RemeshResult<2> out;
   Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
-  const Run run{monitor, settings.hausdorff, {settings.seed}, settings.threads};
+  const Run run{.monitor = monitor,
+                .hausdorff = settings.hausdorff,
+                .seed = {settings.seed},
+                .threads = settings.threads};
   Stopwatch watch(monitor, out.seconds);
 
   watch.phase("curves");
   check_gap(background, input);
   const Projection project = timed(projection, monitor);
   Geometry geometry = make_geometry(input, &project);
-  Start start =
-      make_start(geometry, background, settings.hausdorff.curve, monitor, watch);
+  Start start = make_start(geometry, background, run, watch);
   const std::size_t n_protected = count_balls(start.mesh.curve_edges);
   out.counts["protected_corners"] = static_cast<double>(n_protected);
   out.counts["unprotected_corners"] =
       static_cast<double>(start.n_sharp_corners - n_protected);
-  Workspace w{start.mesh, geometry, background, settings.hausdorff.curve};
-  Legaliser legaliser(w.mesh);
-  out.kept_quality = kept_quality<2>(background.vertices(settings.threads),
-                                     background.locator().cells(), settings.threads);
+  Workspace w{start.mesh, geometry, background, run.hausdorff.curve};
+  out.kept_quality = kept_quality<2>(background.vertices(run.threads),
+                                     background.locator().cells(), run.threads);
   const QualityFloor floor{out.kept_quality, steep_floor};
   // the pure mode starts from the boundary alone
   const bool is_pure = settings.consistency == ConsistencyMode::pure;
-  const RefineCounts refined =
-      is_pure ? RefineCounts{} : refine(w, legaliser, monitor, settings.threads);
+  const RefineCounts refined = is_pure ? RefineCounts{} : refine(w, run);
 
   watch.phase("shape");
-  renumber(w, settings.threads);
+  renumber(w, run.threads);
   if (!is_pure)
-    shape(w, legaliser, monitor, settings.threads, floor, out.counts);
-  renumber(w, settings.threads);
+    shape(w, run, floor, out.counts);
+  renumber(w, run.threads);
 
-  PlaneStars stars(w, legaliser, run, floor, out);
+  PlaneStars stars(w, run, floor, out);
   certify_stars(stars, run, settings, watch, out);
   take_counts(out);
 
   watch.phase("report");
   out.statistics =
-      measure(w.mesh.vertices, w.mesh.cells, w.mesh.neighbours, settings.threads);
+      measure(w.mesh.vertices, w.mesh.cells, w.mesh.neighbours, run.threads);
   extract(w, out);
   watch.stop();
   out.counts["inserted"] = static_cast<double>(refined.inserted);
   out.counts["boundary_splits"] = static_cast<double>(refined.boundary_splits);
   out.counts["rejected"] = static_cast<double>(refined.rejected);
-  out.counts["flips"] = static_cast<double>(legaliser.n_flips());
-  out.counts["capped"] = static_cast<double>(legaliser.n_capped());
-  const bool is_short =
-      !start.has_unit_curves && monitor.reason() == StopReason::finished;
+  out.counts["flips"] = static_cast<double>(w.legaliser.n_flips());
+  out.counts["capped"] = static_cast<double>(w.legaliser.n_capped());
+  const bool is_short = !start.has_unit_curves && !run.is_stopped();
   out.reason = is_short ? StopReason::max_vertices : monitor.reason();
   return out;
 }

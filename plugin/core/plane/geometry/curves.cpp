@@ -215,11 +215,14 @@ void Curve::fit(std::vector<Vector<2>> points, const Projection *projection) {
   }
 }
 
+Curve::OnSegment Curve::on_segment(double t) const {
+  const double last = static_cast<double>(n_segments()) - 1;
+  const double whole = std::clamp(std::floor(t), 0., last);
+  return {static_cast<std::size_t>(whole), t - whole};
+}
+
 Vector<2> Curve::at(double t) const {
-  const double last = static_cast<double>(n_segments());
-  const double whole = std::clamp(std::floor(t), 0., last - 1);
-  const std::size_t k = whole;
-  const double s = t - whole;
+  const auto [k, s] = on_segment(t);
   if (s == 0)
     return points_[k];
   if (s == 1)
@@ -238,17 +241,12 @@ Vector<2> Curve::at(double t) const {
 }
 
 Vector<2> Curve::on_polyline(double t) const {
-  const double last = static_cast<double>(n_segments());
-  const double whole = std::clamp(std::floor(t), 0., last - 1);
-  const std::size_t k = whole;
-  return points_[k] + (t - whole) * (points_[k + 1] - points_[k]);
+  const auto [k, s] = on_segment(t);
+  return points_[k] + s * (points_[k + 1] - points_[k]);
 }
 
 Vector<2> Curve::derivative(double t) const {
-  const double last = static_cast<double>(n_segments());
-  const double whole = std::clamp(std::floor(t), 0., last - 1);
-  const std::size_t k = whole;
-  const double s = t - whole;
+  const auto [k, s] = on_segment(t);
   const Vector<2> chord = points_[k + 1] - points_[k];
   if (is_straight_[k])
     return chord;
@@ -303,11 +301,10 @@ Geometry make_geometry(const GeometryInput &input, const Projection *projection)
     for (;;) {
       done[k] = true;
       curve.vertices.push_back(link.to);
-      const std::size_t v = link.to;
-      if (geometry.is_corner[v] || link.to == from)
+      if (geometry.is_corner[link.to] || link.to == from)
         break;
-      const std::size_t other = chains.at[v][0].first == k ? 1 : 0;
-      k = chains.at[v][other].first;
+      const std::size_t other = chains.at[link.to][0].first == k ? 1 : 0;
+      k = chains.at[link.to][other].first;
       link = chains.outgoing(link.to, other);
     }
     std::vector<Vector<2>> points;

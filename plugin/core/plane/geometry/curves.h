@@ -60,10 +60,16 @@ public:
   void straighten(std::size_t k) { is_straight_[k] = is_chord_[k] = true; }
 
 private:
+  struct OnSegment { ///< a place of the curve
+    std::size_t segment;
+    double fraction;
+  };
   std::vector<Vector<2>> points_;
   std::vector<Vector<2>> start_, end_; ///< Hermite derivatives of each segment
   std::vector<bool> is_straight_, is_chord_;
   const Projection *projection_ = nullptr;
+
+  [[nodiscard]] OnSegment on_segment(double t) const;
 };
 
 /// A point that must stay and is on no curve.

@@ -21,8 +21,7 @@ constexpr std::size_t most_cuts = 1024, most_cuts_at_point = 8;
 /// Cuts a curve into chords that keep to it.
 class Bisection {
 public:
-  Bisection(const Curve &curve, double hausdorff, Monitor &monitor)
-      : curve_(curve), hausdorff_(hausdorff), monitor_(monitor) {}
+  Bisection(const Curve &curve, const Run &run) : curve_(curve), run_(run) {}
 
   /// Adds the ends of the chords over [t0, t1].
   void cut(double t0, double t1) {
@@ -34,22 +33,22 @@ public:
 
 private:
   const Curve &curve_;
-  double hausdorff_;
-  Monitor &monitor_;
+  const Run &run_;
   std::vector<double> cuts_{0};
   std::size_t first_ = 0, most_ = 0; ///< of the chord that is cut
 
   void halve(double t0, double t1, int depth) {
-    monitor_.insist(cuts_.size());
+    run_.monitor.insist(cuts_.size());
     if (cuts_.size() > most_)
       throw MeshingError("an edge along the curve with tag " +
                              std::to_string(curve_.tag) + " was cut " +
                              std::to_string(most_ - first_) +
                              " times and still strays from it by more than " +
-                             std::to_string(hausdorff_) +
+                             std::to_string(run_.hausdorff.curve) +
                              " of its length: the geometry, or project, jumps",
                          curve_.at(t0));
-    if (depth < max_bisections && relative_sagitta(curve_, t0, t1) > hausdorff_) {
+    if (depth < max_bisections &&
+        relative_sagitta(curve_, t0, t1) > run_.hausdorff.curve) {
       const double t = middle(curve_, t0, t1);
       halve(t0, t, depth + 1);
       halve(t, t1, depth + 1);
@@ -89,8 +88,7 @@ void halve_chord(const Curve &curve, std::size_t first, std::size_t last,
 } // namespace
 
 std::vector<double> unit_cuts(const Curve &curve, const LengthTable &table,
-                              const Shells &shells, double hausdorff,
-                              Monitor &monitor) {
+                              const Shells &shells, const Run &run) {
   const double end = static_cast<double>(curve.n_segments());
   std::vector<double> unit{0};
   if (curve.is_frozen)
@@ -108,7 +106,7 @@ std::vector<double> unit_cuts(const Curve &curve, const LengthTable &table,
     unit.push_back(shells.last->parameter);
   unit.push_back(end);
   unit.erase(std::unique(unit.begin(), unit.end()), unit.end());
-  Bisection bisection(curve, hausdorff, monitor);
+  Bisection bisection(curve, run);
   for (std::size_t k = 0; k + 1 < unit.size(); ++k)
     bisection.cut(unit[k], unit[k + 1]);
   std::vector<double> cuts = bisection.take_cuts();

@@ -1,19 +1,19 @@
 #pragma once
 // Where a curve is cut into edges.
 
+#include "base/run.h"
 #include "plane/geometry/protection.h"
 
 namespace anistar {
 
 /// Parameters of the vertices of a curve, from 0 to its end, for edges of equal metric
-/// length near 1, none of which leaves the curve by more than `hausdorff` times its own
-/// length; a frozen curve keeps its points.
+/// length near 1, each of which keeps to the curve within the Hausdorff bound of the
+/// run; a frozen curve keeps its points.
 /// @throws BudgetSpent when the time is up
 /// @throws MeshingError where the curve is torn apart, so that no edge keeps to it
 [[nodiscard]] std::vector<double> unit_cuts(const Curve &curve,
                                             const LengthTable &table,
-                                            const Shells &shells, double hausdorff,
-                                            Monitor &monitor);
+                                            const Shells &shells, const Run &run);
 
 /// All the points of the geometry on a curve.
 [[nodiscard]] std::vector<double> own_points(const Curve &curve);

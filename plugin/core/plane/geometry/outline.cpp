@@ -114,17 +114,15 @@ bool segments_meet(const Vector<2> &a, const Vector<2> &b, const Vector<2> &p,
 } // namespace
 
 Outline make_outline(const Geometry &geometry, const Background<2> &background,
-                     double hausdorff, Monitor &monitor) {
+                     const Run &run) {
   OutlineMaker maker(geometry, background);
   const std::vector<LengthTable> lengths =
-      tabulate_lengths(geometry, background, maker.n_vertices(), monitor);
-  const Protection protection =
-      protect_corners(geometry, background, lengths, hausdorff, monitor);
+      tabulate_lengths(geometry, background, maker.n_vertices(), run.monitor);
+  const Protection protection = protect_corners(geometry, background, lengths, run);
   for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
     const Shells &shells = protection.shells[c];
-    maker.add(c, unit_cuts(geometry.curves[c], lengths[c], shells, hausdorff, monitor),
-              shells);
-    monitor.insist(maker.n_vertices());
+    maker.add(c, unit_cuts(geometry.curves[c], lengths[c], shells, run), shells);
+    run.monitor.insist(maker.n_vertices());
   }
   Outline outline = maker.take();
   outline.n_balls = protection.n_balls;
@@ -133,15 +131,17 @@ Outline make_outline(const Geometry &geometry, const Background<2> &background,
 }
 
 Outline outline_at_points(const Geometry &geometry, const Background<2> &background,
-                          double hausdorff, const Monitor &monitor) {
+                          const Run &run) {
   OutlineMaker maker(geometry, background);
   std::size_t n_vertices = maker.n_vertices();
   for (const Curve &curve : geometry.curves)
     n_vertices += curve.n_segments();
-  const bool has_room = monitor.has_room(n_vertices);
+  const bool has_room = run.monitor.has_room(n_vertices);
   for (std::size_t c = 0; c < geometry.curves.size(); ++c) {
     const Curve &curve = geometry.curves[c];
-    maker.add(c, has_room ? own_points(curve) : fewest_points(curve, hausdorff), {});
+    maker.add(c,
+              has_room ? own_points(curve) : fewest_points(curve, run.hausdorff.curve),
+              {});
   }
   return maker.take();
 }
@@ -150,9 +150,8 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
              const std::vector<Index> &edges, const std::function<void()> &look) {
   bool changed = false;
   const auto move = [&](Index v, const Vector<2> &x) {
-    const std::size_t i = v;
-    changed = changed || outline.vertices[i].x != x;
-    outline.vertices[i] = background.vertex(x, outline.background[i]);
+    changed = changed || outline.vertices[v].x != x;
+    outline.vertices[v] = background.vertex(x, outline.background[v]);
   };
   const auto give_up = [&](Index ball) {
     for (CurveEdge &edge : outline.edges)

@@ -1,7 +1,7 @@
 #pragma once
 // The curves of a domain, cut into edges of unit metric length.
 
-#include "base/monitor.h"
+#include "base/run.h"
 #include "mesh/triangulation.h"
 #include "metric/background.h"
 #include "plane/geometry/curves.h"
@@ -33,24 +33,22 @@ struct Outline {
   std::size_t n_unprotected = 0;      ///< sharp corners without one
 };
 
-/// Cuts every curve into edges of equal metric length near 1, none of which leaves the
-/// curve by more than `hausdorff` times its own length; frozen curves keep their
-/// points.
+/// Cuts every curve into edges of equal metric length near 1, each of which keeps to
+/// the curve within the Hausdorff bound of the run; frozen curves keep their points.
 /// @throws BudgetSpent when the time is up, or the metric asks for more vertices than
 /// the monitor allows
 /// @throws MeshingError when it asks for more than can be numbered, or a projection
 /// tears a curve apart
 [[nodiscard]] Outline make_outline(const Geometry &geometry,
-                                   const Background<2> &background, double hausdorff,
-                                   Monitor &monitor);
+                                   const Background<2> &background, const Run &run);
 
 /// Cuts the curves at points of the geometry: at all, or where the monitor has no room
-/// for so many at as few as keep the curves within `hausdorff`. This is what is made
+/// for so many at as few as keep the curves within that bound. This is what is made
 /// when a budget does not allow unit edges: it asks no projection and takes no longer
 /// than reading the geometry.
 [[nodiscard]] Outline outline_at_points(const Geometry &geometry,
                                         const Background<2> &background,
-                                        double hausdorff, const Monitor &monitor);
+                                        const Run &run);
 
 /// Brings edges nearer to the geometry's own polyline, which is valid: an edge that
 /// spans points of the geometry is split at one, another becomes a piece of a straight

@@ -39,10 +39,10 @@ struct Cut {
 class CornerBall {
 public:
   CornerBall(const Geometry &geometry, std::span<const LengthTable> lengths,
-             double hausdorff, Monitor &monitor, const Vector<2> &x,
-             const SymmetricTensor<2> &M, std::vector<Leg> legs)
-      : geometry_(geometry), lengths_(lengths), hausdorff_(hausdorff),
-        monitor_(monitor), x_(x), M_(M), legs_(std::move(legs)) {
+             const Run &run, const Vector<2> &x, const SymmetricTensor<2> &M,
+             std::vector<Leg> legs)
+      : geometry_(geometry), lengths_(lengths), run_(run), x_(x), M_(M),
+        legs_(std::move(legs)) {
     for (Leg &leg : legs_) {
       const double s = std::min(1., table(leg).total());
       leg.direction = at(leg, parameter(leg, s)) - x_;
@@ -98,8 +98,7 @@ public:
 private:
   const Geometry &geometry_;
   std::span<const LengthTable> lengths_;
-  double hausdorff_;
-  Monitor &monitor_;
+  const Run &run_;
   Vector<2> x_;
   SymmetricTensor<2> M_;
   std::vector<Leg> legs_; ///< counter-clockwise
@@ -171,7 +170,7 @@ private:
     const bool is_whole = is_given && !is_shared;
     const Cut cut = is_whole ? Cut{far_end(leg), whole} : first_at(leg, radius);
     if (relative_sagitta(curve(leg), std::min(near_end(leg), cut.parameter),
-                         std::max(near_end(leg), cut.parameter)) > hausdorff_)
+                         std::max(near_end(leg), cut.parameter)) > run_.hausdorff.curve)
       return {cut, never};
     if (is_whole)
       return {cut, deviation(whole)};
@@ -187,7 +186,7 @@ private:
     const std::size_t n = knots.size();
     double inside = near_end(leg), outside = far_end(leg);
     for (std::size_t k = 1; k < n; ++k) {
-      monitor_.insist(0);
+      run_.monitor.insist(0);
       const double t = knots[leg.leaves ? k : n - 1 - k];
       if (distance(leg, t) >= radius) {
         outside = t;
@@ -196,7 +195,7 @@ private:
       inside = t;
     }
     for (int step = 0; step < n_bisections; ++step) {
-      monitor_.insist(0);
+      run_.monitor.insist(0);
       const double t = .5 * (inside + outside);
       (distance(leg, t) < radius ? inside : outside) = t;
     }
@@ -221,8 +220,7 @@ std::vector<std::vector<Leg>> legs_at_points(const Geometry &geometry) {
 } // namespace
 
 Protection protect_corners(const Geometry &geometry, const Background<2> &background,
-                           std::span<const LengthTable> lengths, double hausdorff,
-                           Monitor &monitor) {
+                           std::span<const LengthTable> lengths, const Run &run) {
   Protection out;
   out.shells.resize(geometry.curves.size());
   std::vector<CornerBall> corners;
@@ -233,8 +231,8 @@ Protection protect_corners(const Geometry &geometry, const Background<2> &backgr
     if (legs[v].size() < 2)
       continue;
     const Vector<2> &x = geometry.points[v];
-    corners.emplace_back(geometry, lengths, hausdorff, monitor, x,
-                         background.metric(x, cell), legs[v]);
+    corners.emplace_back(geometry, lengths, run, x, background.metric(x, cell),
+                         legs[v]);
     for (const auto &group : corners.back().groups())
       for (const Leg &leg : group)
         is_sharp[leg.curve][leg.leaves ? 0 : 1] = true;

@@ -1,7 +1,7 @@
 #pragma once
 // Protecting balls at sharp corners.
 
-#include "base/monitor.h"
+#include "base/run.h"
 #include "plane/geometry/length_table.h"
 
 #include <optional>
@@ -37,11 +37,10 @@ struct Protection {
 /// The radius is the one near 1 that leaves the edges of the legs nearest to unit
 /// length; legs too short for a common one are left alone.
 /// @param lengths table of every curve
-/// @param hausdorff bound for the distance of an edge from its curve, relative
 /// @throws BudgetSpent when the time is up
 [[nodiscard]] Protection protect_corners(const Geometry &geometry,
                                          const Background<2> &background,
                                          std::span<const LengthTable> lengths,
-                                         double hausdorff, Monitor &monitor);
+                                         const Run &run);
 
 } // namespace anistar

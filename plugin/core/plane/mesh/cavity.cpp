@@ -28,12 +28,11 @@ template <std::size_t d> void Cavity<d>::clear() {
 }
 
 template <std::size_t d> void Cavity<d>::add(Index cell) {
-  const std::size_t c = cell;
-  if (c >= stamp_.size())
-    stamp_.resize(std::max(mesh_.cells.size(), c + 1), 0);
-  if (stamp_[c] == epoch_)
+  if (std::cmp_greater_equal(cell, stamp_.size()))
+    stamp_.resize(mesh_.cells.size(), 0);
+  if (stamp_[cell] == epoch_)
     return;
-  stamp_[c] = epoch_;
+  stamp_[cell] = epoch_;
   cells_.push_back(cell);
 }
 

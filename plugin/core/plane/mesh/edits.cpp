@@ -196,12 +196,4 @@ void fill_collapse(Workspace &w, Collapse &collapse) {
   w.mesh.vertex_cell[collapse.vertex] = none;
 }
 
-void renumber(Workspace &w, int threads, double shift) {
-  const std::vector<Index> rank = sort_along_curve(w.mesh, threads, shift);
-  for (CurveEdge &edge : w.on_curves.curve_edges)
-    for (Index *v : {&edge.v0, &edge.v1})
-      if (*v != none) // an entry that a collapse left behind has lost its vertex
-        *v = rank[*v];
-}
-
 } // namespace anistar

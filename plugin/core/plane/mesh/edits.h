@@ -1,35 +1,9 @@
 #pragma once
 // The edits of a mesh on its curves, each one cavity of the cavity operator.
 
-#include "metric/background.h"
-#include "plane/geometry/curves.h"
-#include "plane/mesh/cavity.h"
-#include "plane/mesh/start.h"
-#include "plane/mesh/walls.h"
+#include "plane/mesh/workspace.h"
 
 namespace anistar {
-
-/// Everything an edit needs.
-struct Workspace {
-  MeshOnCurves &on_curves;
-  const Geometry &geometry;
-  const Background<2> &background;
-  double hausdorff;
-  Triangulation<2> &mesh = on_curves.mesh;
-  Cavity<2> cavity{mesh};
-  Walls walls{mesh, on_curves.curve_edges, geometry};
-
-  [[nodiscard]] const CurveEdge &curve_edge(HalfFacet h) const {
-    return on_curves.curve_edges[mesh.constraint(h)];
-  }
-  [[nodiscard]] const Curve &curve(const CurveEdge &edge) const {
-    return geometry.curves[edge.curve];
-  }
-  [[nodiscard]] double length(HalfFacet edge) const {
-    const auto [a, b] = mesh.facet(edge);
-    return edge_length(mesh.vertex(a), mesh.vertex(b));
-  }
-};
 
 /// Inserts an interior vertex into the cell that contains it. @returns the vertex, none
 /// when it lies too near to an edge. The new cells are cavity.star().
@@ -58,8 +32,5 @@ struct Collapse {
 [[nodiscard]] bool bound_collapse(Workspace &w, Collapse &collapse);
 /// Carries the collapse out. @pre bound_collapse was true and nothing changed since.
 void fill_collapse(Workspace &w, Collapse &collapse);
-
-/// Sorts the mesh along a Hilbert curve and tells the curve edges.
-void renumber(Workspace &w, int threads, double shift = 0);
 
 } // namespace anistar

@@ -1,7 +1,7 @@
 #pragma once
 // Where a vertex may go: targets of smoothing, validity of a move, sliding on a curve.
 
-#include "plane/mesh/edits.h"
+#include "plane/mesh/workspace.h"
 
 namespace anistar {
 

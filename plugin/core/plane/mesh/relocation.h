@@ -2,7 +2,7 @@
 // Trial places of a vertex and what its star is worth there.
 
 #include "base/ellipse_sampler.h"
-#include "plane/mesh/edits.h"
+#include "plane/mesh/workspace.h"
 
 namespace anistar {
 

@@ -7,6 +7,7 @@
 #include "search/box_tree.h"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace anistar {
@@ -46,8 +47,7 @@ private:
   BoxTree<2> tree_;
 
   [[nodiscard]] Index place(Index entry) const {
-    const std::size_t e = entry;
-    return e < place_.size() ? place_[e] : none;
+    return std::cmp_less(entry, place_.size()) ? place_[entry] : none;
   }
   [[nodiscard]] std::vector<Box<2>> collect(const Geometry &geometry);
   [[nodiscard]] const Vector<2> &x(Index v) const { return mesh_.vertex(v).x; }

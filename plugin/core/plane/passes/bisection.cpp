@@ -1,5 +1,6 @@
 #include "plane/passes/bisection.h"
 
+#include "plane/mesh/edits.h"
 #include "plane/mesh/protecting_ball.h"
 #include "plane/passes/shape.h"
 
@@ -24,8 +25,7 @@ constexpr double ball_factor = .7;
 
 class Bisection {
 public:
-  Bisection(Workspace &w, Legaliser &legaliser)
-      : w_(w), mesh_(w.mesh), legaliser_(legaliser) {}
+  explicit Bisection(Workspace &w) : w_(w), mesh_(w.mesh) {}
 
   /// Splits a long wall of c, or else the edge where the path along longest edges ends.
   /// Between two walls new vertices inside would only make flatter cells.
@@ -49,7 +49,6 @@ public:
 private:
   Workspace &w_;
   Triangulation<2> &mesh_;
-  Legaliser &legaliser_;
   std::optional<ProtectingBall> ball_; ///< once a leg across one is met
 
   /// Edges across a protecting ball are not split: the ball becomes smaller instead.
@@ -66,8 +65,8 @@ private:
     }
     ball_->commit();
     for (Index v : ball_->shell())
-      legaliser_.push_star(v);
-    legaliser_.run(flip_cap);
+      w_.legaliser.push_star(v);
+    w_.legaliser.run(flip_cap);
     return true;
   }
 
@@ -98,8 +97,8 @@ private:
       return false;
     for (HalfFacet h : w_.cavity.star())
       for (std::size_t i = 0; i < 3; ++i)
-        legaliser_.push(HalfFacet(h.cell(), i));
-    legaliser_.run(flip_cap);
+        w_.legaliser.push(HalfFacet(h.cell(), i));
+    w_.legaliser.run(flip_cap);
     return true;
   }
 };
@@ -131,27 +130,26 @@ std::size_t most_poor(const Triangulation<2> &mesh) {
 
 } // namespace
 
-std::size_t bisect(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                   QualityFloor floor, int threads) {
-  std::vector<Index> poor = poor_cells(w.mesh, floor, threads);
+std::size_t bisect(Workspace &w, const Run &run, QualityFloor floor) {
+  std::vector<Index> poor = poor_cells(w.mesh, floor, run.threads);
   if (poor.size() > most_poor(w.mesh)) {
     floor.elsewhere = floor.between_walls;
-    poor = poor_cells(w.mesh, floor, threads);
+    poor = poor_cells(w.mesh, floor, run.threads);
   }
-  Bisection bisection(w, legaliser);
+  Bisection bisection(w);
   Progress progress;
   std::size_t n_splits = 0;
   for (int round = 0; round < max_rounds && !poor.empty(); ++round) {
-    (void)repair(w, monitor, {{unit_floor, unit_floor}}, threads);
-    (void)repair(w, monitor, {floor, true}, threads);
-    poor = poor_cells(w.mesh, floor, threads);
+    (void)repair(w, run, {{unit_floor, unit_floor}});
+    (void)repair(w, run, {floor, true});
+    poor = poor_cells(w.mesh, floor, run.threads);
     if (progress.has_ended(w.mesh, poor))
       break;
     for (Index c : poor)
-      if (monitor.keep_going(w.mesh.vertices.size(), 0) && w.mesh.is_alive(c) &&
+      if (run.monitor.keep_going(w.mesh.vertices.size(), 0) && w.mesh.is_alive(c) &&
           !floor.is_met(w.mesh, c))
         n_splits += bisection.split(c);
-    poor = poor_cells(w.mesh, floor, threads);
+    poor = poor_cells(w.mesh, floor, run.threads);
   }
   return n_splits;
 }

@@ -3,9 +3,8 @@
 // walls nearer to each other than the size asked for, and where the metric varies more
 // within a cell than unit edges allow.
 
-#include "base/monitor.h"
-#include "plane/mesh/edits.h"
-#include "plane/mesh/flips.h"
+#include "base/run.h"
+#include "plane/mesh/workspace.h"
 #include "plane/passes/quality_floor.h"
 
 namespace anistar {
@@ -16,7 +15,6 @@ namespace anistar {
 /// it is longer (Rivara, New longest-edge algorithms for the refinement and/or
 /// improvement of unstructured triangulations, 1997).
 /// @returns how many edges were split.
-std::size_t bisect(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                   QualityFloor floor, int threads);
+std::size_t bisect(Workspace &w, const Run &run, QualityFloor floor);
 
 } // namespace anistar

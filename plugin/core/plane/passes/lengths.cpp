@@ -1,4 +1,5 @@
 #include "base/parallel.h"
+#include "plane/mesh/edits.h"
 #include "plane/passes/shape.h"
 
 namespace anistar {
@@ -11,7 +12,7 @@ constexpr int flip_cap = 60;
 
 class LengthControl {
 public:
-  LengthControl(Workspace &w, Legaliser &legaliser) : w_(w), legaliser_(legaliser) {}
+  explicit LengthControl(Workspace &w) : w_(w) {}
 
   bool collapse_short(Index v, double shortest) {
     star_of(w_.mesh, v, star_);
@@ -56,7 +57,6 @@ public:
 
 private:
   Workspace &w_;
-  Legaliser &legaliser_;
   std::vector<HalfFacet> star_;
   std::vector<Index> neighbours_;
   Collapse collapse_;
@@ -64,8 +64,8 @@ private:
   void settle() {
     for (HalfFacet h : w_.cavity.star())
       for (std::size_t i = 0; i < 3; ++i)
-        legaliser_.push(HalfFacet(h.cell(), i));
-    legaliser_.run(flip_cap);
+        w_.legaliser.push(HalfFacet(h.cell(), i));
+    w_.legaliser.run(flip_cap);
   }
 
   /// The worst cell that the bounded cavity would leave, 0 when an edge is too long.
@@ -99,26 +99,26 @@ std::vector<HalfFacet> edges_of_length(const Workspace &w, int threads, Wanted w
 
 } // namespace
 
-LengthCounts control_lengths(Workspace &w, Legaliser &legaliser, Monitor &monitor,
-                             double shortest, double longest, int threads) {
-  LengthControl control(w, legaliser);
+LengthCounts control_lengths(Workspace &w, const Run &run, const LengthBounds &bounds) {
+  LengthControl control(w);
   LengthCounts counts;
-  const auto is_short = [&](double length) { return length < shortest; };
-  const auto is_long = [&](double length) { return length > longest; };
+  const auto is_short = [&](double length) { return length < bounds.shortest; };
+  const auto is_long = [&](double length) { return length > bounds.longest; };
   std::vector<Index> ends;
-  for (HalfFacet edge : edges_of_length(w, threads, is_short))
+  for (HalfFacet edge : edges_of_length(w, run.threads, is_short))
     for (Index v : w.mesh.facet(edge))
       ends.push_back(v);
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (Index v : ends)
-    if (monitor.keep_going(0, 0) && w.mesh.is_used(v) &&
+    if (run.monitor.keep_going(0, 0) && w.mesh.is_used(v) &&
         w.mesh.feature[v] != Triangulation<2>::corner)
-      counts.collapses += control.collapse_short(v, shortest);
-  std::vector<HalfFacet> edges = edges_of_length(w, threads, is_long);
+      counts.collapses += control.collapse_short(v, bounds.shortest);
+  std::vector<HalfFacet> edges = edges_of_length(w, run.threads, is_long);
   for (std::size_t k = 0;
-       k < edges.size() && monitor.keep_going(w.mesh.vertices.size(), .5); ++k)
-    if (w.mesh.is_alive(edges[k].cell()) && control.split_long(edges[k], longest)) {
+       k < edges.size() && run.monitor.keep_going(w.mesh.vertices.size(), .5); ++k)
+    if (w.mesh.is_alive(edges[k].cell()) &&
+        control.split_long(edges[k], bounds.longest)) {
       ++counts.splits;
       for (HalfFacet h : w.cavity.star()) // the halves, when one was very long
         for (std::size_t i = 0; i < 3; ++i)

@@ -2,6 +2,7 @@
 
 #include "mesh/blocks.h"
 #include "mesh/mesh_walk.h"
+#include "plane/mesh/edits.h"
 
 #include <cmath>
 #include <memory>
@@ -305,15 +306,14 @@ double metric_area(const Triangulation<2> &mesh, const CellRange &cells,
 
 /// One level: blocks side by side. @returns false when the monitor has no room for it
 /// or stopped it.
-bool refine_blocks(Workspace &w, Legaliser &legaliser, Monitor &monitor, double radius,
-                   int threads, RefineCounts &counts) {
+bool refine_blocks(Workspace &w, const Run &run, double radius, RefineCounts &counts) {
   Triangulation<2> &mesh = w.mesh;
   const Blocks blocks(mesh.vertices.size());
   std::vector<CellRange> cells;
   std::vector<std::size_t> n_new(blocks.size());
   for (std::size_t k = 0; k < blocks.size(); ++k)
     cells.push_back(cells_of(mesh, blocks[k]));
-  parallel_items(blocks.size(), threads, [&] {
+  parallel_items(blocks.size(), run.threads, [&] {
     return [&](std::size_t k) {
       const auto n = static_cast<double>(blocks[k].last - blocks[k].first);
       const double area = metric_area(mesh, cells[k], blocks[k]);
@@ -321,22 +321,23 @@ bool refine_blocks(Workspace &w, Legaliser &legaliser, Monitor &monitor, double 
           std::clamp(expected_vertices(area, radius) - n, .1 * n, most_growth * n));
     };
   });
-  if (!monitor.has_room(mesh.vertices.size() +
-                        std::accumulate(n_new.begin(), n_new.end(), std::size_t{0})))
+  if (!run.monitor.has_room(mesh.vertices.size() + std::accumulate(n_new.begin(),
+                                                                   n_new.end(),
+                                                                   std::size_t{0})))
     return false;
   std::vector<Slots> slots;
   for (std::size_t n : n_new)
     slots.push_back(mesh.make_slots(n));
 
   const auto caller = std::this_thread::get_id();
-  std::atomic<bool> stopped = !monitor.look(0);
+  std::atomic<bool> stopped = !run.monitor.look(0);
   std::mutex counting;
-  parallel_items(blocks.size(), threads, [&] {
+  parallel_items(blocks.size(), run.threads, [&] {
     return [&, own = std::make_unique<Legaliser>(mesh),
             refinement = std::unique_ptr<Refinement>()](std::size_t k) mutable {
       if (!refinement)
         refinement = std::make_unique<Refinement>(w, *own);
-      if (std::this_thread::get_id() == caller && !monitor.look(0))
+      if (std::this_thread::get_id() == caller && !run.monitor.look(0))
         stopped = true;
       if (stopped)
         return;
@@ -349,7 +350,7 @@ bool refine_blocks(Workspace &w, Legaliser &legaliser, Monitor &monitor, double 
       while (refinement->step()) {
       }
       const std::lock_guard lock(counting);
-      legaliser.take_counts(*own);
+      w.legaliser.take_counts(*own);
       counts += refinement->take_counts();
     };
   });
@@ -358,15 +359,15 @@ bool refine_blocks(Workspace &w, Legaliser &legaliser, Monitor &monitor, double 
 
 } // namespace
 
-RefineCounts refine(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads) {
-  Refinement refinement(w, legaliser);
+RefineCounts refine(Workspace &w, const Run &run) {
+  Refinement refinement(w, w.legaliser);
   RefineCounts counts;
   const auto enough = w.mesh.vertices.size() + vertices_for_blocks;
   refinement.push(0, w.mesh.cells.size());
   bool is_left = true;
   const auto run_until = [&](std::size_t n_vertices) {
     while (w.mesh.vertices.size() < n_vertices && is_left &&
-           monitor.keep_going(w.mesh.vertices.size(), 0))
+           run.monitor.keep_going(w.mesh.vertices.size(), 0))
       is_left = refinement.step();
   };
   run_until(enough);
@@ -374,12 +375,12 @@ RefineCounts refine(Workspace &w, Legaliser &legaliser, Monitor &monitor, int th
     double radius = refinement.level();
     bool going = true;
     for (int stage = 0, last = 0; going && last < 2; ++stage) {
-      renumber(w, threads, stage % 2 == 0 ? .25 : 0);
+      renumber(w, run.threads, stage % 2 == 0 ? .25 : 0);
       radius = std::max(largest_radius, .5 * radius);
       last += radius == largest_radius;
-      going = refine_blocks(w, legaliser, monitor, radius, threads, counts);
+      going = refine_blocks(w, run, radius, counts);
     }
-    renumber(w, threads);
+    renumber(w, run.threads);
     refinement.clear();
     refinement.push(0, w.mesh.cells.size());
   }

@@ -1,9 +1,8 @@
 #pragma once
 // Circumcentre refinement in the mean metric, largest circumcircle first.
 
-#include "base/monitor.h"
-#include "plane/mesh/edits.h"
-#include "plane/mesh/flips.h"
+#include "base/run.h"
+#include "plane/mesh/workspace.h"
 
 namespace anistar {
 
@@ -26,6 +25,6 @@ struct RefineCounts {
 /// A mesh that will be large is refined in levels, each to half the radius of the one
 /// before, in blocks side by side. The blocks are others at every level, so what lies
 /// between them has its turn; the rest is done at the end, in order.
-RefineCounts refine(Workspace &w, Legaliser &legaliser, Monitor &monitor, int threads);
+RefineCounts refine(Workspace &w, const Run &run);
 
 } // namespace anistar

@@ -1,3 +1,4 @@
+#include "plane/mesh/edits.h"
 #include "plane/passes/shape.h"
 
 #include <array>
@@ -195,17 +196,16 @@ private:
 
 } // namespace
 
-std::size_t repair(Workspace &w, Monitor &monitor, const RepairRule &rule,
-                   int threads) {
+std::size_t repair(Workspace &w, const Run &run, const RepairRule &rule) {
   Repair operations(w, rule);
   std::size_t n_poor = 0;
   bool changed = true;
   for (int round = 0; round < max_rounds && changed; ++round) {
-    const std::vector<Index> poor = poor_cells(w.mesh, rule.floor, threads);
+    const std::vector<Index> poor = poor_cells(w.mesh, rule.floor, run.threads);
     n_poor = poor.size();
     changed = false;
     for (Index c : poor)
-      if (monitor.keep_going(w.mesh.vertices.size(), 0) && w.mesh.is_alive(c) &&
+      if (run.monitor.keep_going(w.mesh.vertices.size(), 0) && w.mesh.is_alive(c) &&
           !rule.floor.is_met(w.mesh, c))
         changed = operations.improve(c) || changed;
   }

@@ -94,8 +94,8 @@ private:
 /// A smoother of its own for each thread.
 class BlockSmoother {
 public:
-  BlockSmoother(Workspace &w, Legaliser &legaliser, Target target)
-      : total_(legaliser), own_(std::make_unique<Legaliser>(w.mesh)),
+  BlockSmoother(Workspace &w, Target target)
+      : total_(w.legaliser), own_(std::make_unique<Legaliser>(w.mesh)),
         smoother_(w, *own_, target) {}
 
   bool visit(Index v, const VertexRange &range) {
@@ -112,16 +112,15 @@ private:
 
 } // namespace
 
-void smooth(Workspace &w, Legaliser &legaliser, Monitor &monitor, Target target,
-            int threads) {
+void smooth(Workspace &w, const Run &run, Target target) {
   std::vector<Index> vertices;
   for (std::size_t v = 0; v < w.mesh.vertices.size(); ++v)
     if (w.mesh.is_used(static_cast<Index>(v)))
       vertices.push_back(static_cast<Index>(v));
-  Smoother last(w, legaliser, target);
+  Smoother last(w, w.legaliser, target);
   visit_in_blocks(
-      Blocks(w.mesh.vertices.size()), vertices, threads, monitor, 0,
-      [&] { return BlockSmoother(w, legaliser, target); }, last);
+      Blocks(w.mesh.vertices.size()), vertices, run.threads, run.monitor, 0,
+      [&] { return BlockSmoother(w, target); }, last);
 }
 
 } // namespace anistar

@@ -63,10 +63,9 @@ private:
 
 class Agreement {
 public:
-  Agreement(Workspace &w, Legaliser &legaliser, const Run &run)
-      : w_(w), mesh_(w.mesh), legaliser_(legaliser), run_(run),
-        blocks_(mesh_.vertices.size()), relocator_(w, legaliser, run.seed),
-        work_(mesh_.vertices.size()) {}
+  Agreement(Workspace &w, const Run &run)
+      : w_(w), mesh_(w.mesh), run_(run), blocks_(mesh_.vertices.size()),
+        relocator_(w, w.legaliser, run.seed), work_(mesh_.vertices.size()) {}
 
   AgreementCounts run() {
     scan();
@@ -85,7 +84,6 @@ public:
 private:
   Workspace &w_;
   Triangulation<2> &mesh_;
-  Legaliser &legaliser_;
   const Run &run_;
   Blocks blocks_;
   AgreementCounts counts_;
@@ -106,7 +104,7 @@ private:
     const bool going = visit_in_blocks(
         blocks_, vertices, run_.threads, run_.monitor, fraction,
         [&] {
-          return BlockRelocator(w_, legaliser_, run_.seed, move, counts_, listed);
+          return BlockRelocator(w_, w_.legaliser, run_.seed, move, counts_, listed);
         },
         last);
     counts_ += relocator_.take_counts();
@@ -215,8 +213,6 @@ private:
 
 } // namespace
 
-AgreementCounts agree(Workspace &w, Legaliser &legaliser, const Run &run) {
-  return Agreement(w, legaliser, run).run();
-}
+AgreementCounts agree(Workspace &w, const Run &run) { return Agreement(w, run).run(); }
 
 } // namespace anistar

@@ -11,6 +11,6 @@ namespace anistar {
 /// number, then walks on the plateau while few are left. The set of vertices to visit
 /// is maintained, never searched for again. Vertices are moved in blocks, see
 /// mesh/blocks.h.
-AgreementCounts agree(Workspace &w, Legaliser &legaliser, const Run &run);
+AgreementCounts agree(Workspace &w, const Run &run);
 
 } // namespace anistar

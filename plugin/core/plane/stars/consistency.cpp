@@ -32,10 +32,10 @@ public:
   using Snapshot = MeshOnCurves;
   using Score = Hits;
 
-  Rounds(Workspace &w, Legaliser &legaliser, const Run &run,
-         const ConsistencyParameters &parameters, bool relocate)
-      : w_(w), mesh_(w.mesh), legaliser_(legaliser), run_(run), parameters_(parameters),
-        relocates_(relocate), is_starting_(!relocate), insertion_(w) {}
+  Rounds(Workspace &w, const Run &run, const ConsistencyParameters &parameters,
+         bool relocate)
+      : w_(w), mesh_(w.mesh), run_(run), parameters_(parameters), relocates_(relocate),
+        is_starting_(!relocate), insertion_(w) {}
 
   [[nodiscard]] const Triangulation<2> &mesh() const { return mesh_; }
   [[nodiscard]] const Background<2> &background() const { return w_.background; }
@@ -58,7 +58,7 @@ public:
     is_starting_ = is_starting_ && rule == Rule::size;
     const Run run = run_.in_round(counts.rounds + 1);
     if (moving)
-      (void)agree(w_, legaliser_, run);
+      (void)agree(w_, run);
     renumber(w_, run.threads);
     known = certify_all(mesh_, run);
     if (moving)
@@ -87,7 +87,6 @@ public:
 private:
   Workspace &w_;
   Triangulation<2> &mesh_;
-  Legaliser &legaliser_;
   const Run &run_;
   const ConsistencyParameters &parameters_;
   bool relocates_, is_starting_;
@@ -133,11 +132,10 @@ private:
 
 } // namespace
 
-ConsistencyCounts refine_until_consistent(Workspace &w, Legaliser &legaliser,
-                                          const Run &run,
+ConsistencyCounts refine_until_consistent(Workspace &w, const Run &run,
                                           const ConsistencyParameters &parameters,
                                           bool relocate, DelaunayBits &known) {
-  Rounds rounds(w, legaliser, run, parameters, relocate);
+  Rounds rounds(w, run, parameters, relocate);
   return insert_until_consistent(rounds, run, parameters, known);
 }
 

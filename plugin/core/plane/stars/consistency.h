@@ -16,7 +16,7 @@ namespace anistar {
 /// @param known the answers for the mesh, which has no free cells; afterwards for the
 /// mesh that is left
 [[nodiscard]] ConsistencyCounts
-refine_until_consistent(Workspace &w, Legaliser &legaliser, const Run &run,
+refine_until_consistent(Workspace &w, const Run &run,
                         const ConsistencyParameters &parameters, bool relocate,
                         DelaunayBits &known);
 
