@@ -6,7 +6,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from anistar import dolfinx_wheel
+from anistar.adapters import dolfinx_wheel
 
 #: Arguments that make the examples small enough for every build of the documentation.
 ARGUMENTS = {

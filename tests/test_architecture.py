@@ -33,7 +33,10 @@ ROOMS_OF_A_MESHER = [{"geometry"}, {"mesh"}, {"passes", "stars"}]
 MADE_BY_COMMANDS = {"anistar-demo", "anistar-demo-3d", "build", "dist"}
 
 # The demo is an example that ships inside the package; it solves with scikit-fem.
-DEMO_PROBLEM = "anistar.demo_problem"
+DEMO_PROBLEM = "anistar.demo.problem"
+
+# It finds out where dolfinx is before it looks for it.
+DIAGNOSIS = "anistar.cli.diagnosis"
 
 # ParaView loads this file by its path, as no part of a package.
 PARAVIEW_PLUGIN = "anistar.adapters.vtk.paraview_plugin"
@@ -131,9 +134,9 @@ def is_standard(root):
     return root in sys.stdlib_module_names
 
 
-def test_only_adapters_and_the_demo_problem_import_adapters():
+def test_only_adapters_the_demo_problem_and_the_diagnosis_import_adapters():
     library = [name for name in ALL if not is_within(name, "anistar.adapters")]
-    assert set(importers_of("anistar.adapters", library)) <= {DEMO_PROBLEM}
+    assert set(importers_of("anistar.adapters", library)) <= {DEMO_PROBLEM, DIAGNOSIS}
 
 
 def test_modules_import_each_other_without_circles():

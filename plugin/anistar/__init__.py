@@ -1,21 +1,24 @@
 """anistar: certified anisotropic Delaunay mesh adaptation for any PDE code."""
 
 from . import metric
-from .adapt import Adapted, AdaptOptions, adapt
-from .certificate import Certificate, SimplexOfStar, certify, explain_star
-from .consistency import ConsistencyOptions
 from .errors import FormatError, MeshingError
-from .fields import Field
 from .formats import read, write
-from .keeping import KeepOptions, needs_adaptation
-from .loop import Loop, LoopError, Step, adapt_loop
-from .loop_options import LoopOptions
-from .mesh import Mesh
+from .judging.certificate import Certificate, SimplexOfStar, certify, explain_star
+from .loops.adapt import Adapted, AdaptOptions, adapt
+from .loops.keeping import KeepOptions, needs_adaptation
+from .loops.loop import Loop, LoopError, Step, adapt_loop
+from .loops.loop_options import LoopOptions
+from .loops.settling import Settled
+from .loops.study import Study, convergence_study
+from .loops.unsteady import UnsteadyOptions, unsteady_loop
+from .meshes.fields import Field
+from .meshes.mesh import Mesh
+from .meshes.validation import validate
+from .meshes.violations import Violation
 from .metric import MetricError, MetricOptions
-from .remesh import Remeshed, remesh
-from .remesh_options import RemeshOptions
-from .settling import Settled
-from .study import Study, convergence_study
+from .remeshing.consistency_options import ConsistencyOptions
+from .remeshing.options import RemeshOptions
+from .remeshing.remesh import Remeshed, remesh
 from .transfer import (
     TransferOptions,
     Transferred,
@@ -23,9 +26,6 @@ from .transfer import (
     transfer_operator,
     transfer_quadrature,
 )
-from .unsteady import UnsteadyOptions, unsteady_loop
-from .validation import validate
-from .violations import Violation
 
 __all__ = [
     "AdaptOptions",

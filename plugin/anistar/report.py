@@ -12,7 +12,7 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from .formats.atomic import replaced
+from .atomic import replaced
 
 
 @runtime_checkable

@@ -16,9 +16,9 @@ import numpy as np
 
 import anistar
 from anistar.adapters.dolfinx import from_dolfinx, point_values, to_dolfinx, to_function
-from anistar.interpolation_error import l2_error
+from anistar.judging.interpolation_error import l2_error
 from anistar.pictures import solution_picture
-from anistar.volume_pictures import volume_picture
+from anistar.pictures.volume import volume_picture
 
 # dolfinx and what comes with it can be imported once anistar's adapter has found its wheel.
 import dolfinx.fem  # isort: skip

@@ -20,7 +20,7 @@ from netgen.geom2d import SplineGeometry
 import anistar
 from anistar.adapters.ngsolve import from_ngsolve, to_ngsolve
 from anistar.pictures import mesh_picture
-from anistar.volume_pictures import volume_picture
+from anistar.pictures.volume import volume_picture
 
 RADIUS = 0.05
 THICKNESS = 0.5

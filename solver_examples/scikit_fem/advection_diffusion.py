@@ -12,7 +12,7 @@ from skfem import Basis, BilinearForm, ElementTriP0, ElementTriP1, condense, sol
 
 import anistar
 from anistar.adapters.skfem import to_skfem
-from anistar.demo_problem import EPSILON, WIND, channel, upwind_times
+from anistar.demo.problem import EPSILON, WIND, channel, upwind_times
 from anistar.pictures import solution_picture
 
 COMPLEXITIES = (500, 1000, 2000, 4000)

@@ -17,7 +17,7 @@ from skfem.helpers import dot, grad
 import anistar
 from anistar.adapters.skfem import from_skfem, to_skfem
 from anistar.pictures import mesh_picture
-from anistar.series import SeriesWriter
+from anistar.runs.series import SeriesWriter
 
 NU = 0.005
 DIRECTION = np.array([2.0, 1.0]) / np.sqrt(5.0)
@@ -79,7 +79,7 @@ def main(complexity=700, end=0.8, steps=160, refinements=4, output="series.pvd",
     fields = {"u": exact(uniform.points, 0.0)}
     for before, after in itertools.pairwise(times):
         fields = advance(uniform, fields, before, after)
-    at_end = anistar.unsteady.Instant(end, uniform, fields)
+    at_end = anistar.loops.unsteady.Instant(end, uniform, fields)
     rows.append(("uniform", uniform.n_points, error(at_end)))
 
     writer = SeriesWriter(output)

@@ -25,8 +25,8 @@ from skfem.helpers import dot, grad
 
 import anistar
 from anistar.adapters.skfem import from_skfem, to_skfem
-from anistar.interpolation_error import l2_error
-from anistar.volume_pictures import volume_picture
+from anistar.judging.interpolation_error import l2_error
+from anistar.pictures.volume import volume_picture
 
 EPSILON = 0.01
 COMPLEXITIES = (500, 1000, 2000, 4000)

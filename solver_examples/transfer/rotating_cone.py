@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial import Delaunay
 
 import anistar
-from anistar.interpolation_error import l2_error
+from anistar.judging.interpolation_error import l2_error
 from anistar.metric import from_sizes, graded
 from anistar.transfer import METHODS, integral
 

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from meshes import annulus, cube, slit, square, two_regions
 
-from anistar.adapt import AdaptOptions, adapt
 from anistar.errors import MeshingError
-from anistar.fields import Field
-from anistar.interpolation_error import l2_error
+from anistar.judging.interpolation_error import l2_error
+from anistar.loops.adapt import AdaptOptions, adapt
+from anistar.meshes.fields import Field
+from anistar.meshes.validation import validate
 from anistar.metric import MetricOptions, estimate, from_fields
-from anistar.remesh import RemeshOptions, remesh
+from anistar.remeshing.remesh import RemeshOptions, remesh
 from anistar.transfer import TransferOptions
-from anistar.validation import validate
 
 
 def layer(points):
@@ -278,7 +278,7 @@ def test_a_mesh_that_was_stopped_above_its_cap_is_no_result(monkeypatch):
     found = remesh(mesh, np.tile(100 * np.eye(2), (mesh.n_points, 1, 1)))
     assert found.mesh.n_cells > 100
     limited = dataclasses.replace(found, report=dataclasses.replace(found.report, converged=False))
-    monkeypatch.setattr(import_module("anistar.adapt"), "remesh", lambda *_, **__: limited)
+    monkeypatch.setattr(import_module("anistar.loops.adapt"), "remesh", lambda *_, **__: limited)
     asked = AdaptOptions(metric=MetricOptions(target_complexity=1e4, max_elements=100))
     with pytest.raises(MeshingError, match=f"{found.mesh.n_cells} elements exceed max_elements"):
         adapt(mesh, {"u": layer(mesh.points)}, asked)
@@ -317,7 +317,7 @@ def test_a_mesh_that_a_budget_stopped_is_not_made_again():
 def test_a_target_that_no_machine_has_room_for_is_refused_before_a_metric_is_made(
     target, named, monkeypatch
 ):
-    monkeypatch.setattr(import_module("anistar.adapt"), "from_fields", None)
+    monkeypatch.setattr(import_module("anistar.loops.adapt"), "from_fields", None)
     mesh = square(8)
     message = (
         rf"the target complexity {named} asks for about 1.*e\+12 vertices, which take .* memory"

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshes import cube, rectangle_with_jitter, square
 
-from anistar.interpolation_error import interpolation_error, l2_error, l2_norm, simplex_rule
+from anistar.judging.interpolation_error import interpolation_error, l2_error, l2_norm, simplex_rule
 from anistar.metric.recovery import hessian_and_noise
 
 coefficient = st.floats(-3, 3)

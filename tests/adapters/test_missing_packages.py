@@ -50,7 +50,7 @@ def without(packages, program, *words, cwd=None):
         ("adapters.petsc", DOLFINX, "petsc"),
         ("adapters.vtk", "vtk,vtkmodules", "vtk"),
         ("pictures", "matplotlib", "plot"),
-        ("demo_problem", "skfem", "skfem"),
+        ("demo.problem", "skfem", "skfem"),
     ],
 )
 def test_every_adapter_names_the_extra_that_installs_its_package(module, packages, extra):

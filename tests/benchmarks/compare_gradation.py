@@ -24,11 +24,11 @@ from rich.console import Console
 from rich.table import Table
 
 from anistar import Mesh, certify, metric, remesh
-from anistar.interpolation_error import l2_error
+from anistar.judging.interpolation_error import l2_error
+from anistar.judging.quality import quality
 from anistar.metric.gradation import GrowthLaw, grade_on
 from anistar.metric.kernels.gradation import wide_graph
 from anistar.metric.rootfind import rescaling
-from anistar.quality import quality
 
 PASSES = 4
 GRID_3D = 26**3

@@ -21,14 +21,14 @@ from rich.table import Table
 from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import KDTree
 
-from anistar.adapt import AdaptOptions, adapt
-from anistar.fields import Field
-from anistar.mesh import Mesh
+from anistar.loops.adapt import AdaptOptions, adapt
+from anistar.meshes.fields import Field
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 from anistar.metric import MetricOptions
 from anistar.transfer import METHODS, TransferOptions, integral, transfer
-from anistar.transfer.difference import l2_difference
-from anistar.transfer.loading import overlapped
-from anistar.validation import validate
+from anistar.transfer.projection.difference import l2_difference
+from anistar.transfer.projection.loading import overlapped
 
 try:
     from mmgpy import transfer_fields

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from anistar.interpolation_error import l2_error
-from anistar.mesh import Mesh
+from anistar.judging.interpolation_error import l2_error
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 from anistar.metric import MetricOptions, from_fields
-from anistar.remesh import remesh
-from anistar.validation import validate
+from anistar.remeshing.remesh import remesh
 
 Array = NDArray[np.float64]
 

@@ -20,13 +20,13 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from anistar.interpolation_error import l2_error, simplex_rule
-from anistar.mesh import Mesh
+from anistar.judging.interpolation_error import l2_error, simplex_rule
+from anistar.judging.quality import quality
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes
+from anistar.meshes.validation import validate
 from anistar.metric import absolute
-from anistar.quality import quality
-from anistar.remesh import remesh
-from anistar.topology import cell_volumes
-from anistar.validation import validate
+from anistar.remeshing.remesh import remesh
 
 try:
     import mmgpy

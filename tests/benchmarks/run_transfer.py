@@ -16,9 +16,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 from anistar.transfer import METHODS, TransferOptions, transfer
-from anistar.validation import validate
 
 # Tetrahedra of a box around its diagonal, as orders in which the axes are taken.
 ORDERS = ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2))

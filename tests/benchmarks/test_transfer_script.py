@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from anistar.validation import validate
+from anistar.meshes.validation import validate
 
 SCRIPT = runpy.run_path(str(Path(__file__).parent / "run_transfer.py"))
 

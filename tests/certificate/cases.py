@@ -4,7 +4,7 @@ import numpy as np
 from oracle import turns
 from scipy.spatial import Delaunay
 
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
 
 
 def metric_of(angle, sizes):

@@ -5,8 +5,8 @@ import pytest
 from cases import convex_case, lattice_case, thin_case, walled_case
 from oracle import Walls, delaunay_on_convex_domain, in_circle
 
-from anistar.certificate import certify
-from anistar.validation import validate
+from anistar.judging.certificate import certify
+from anistar.meshes.validation import validate
 
 
 def assert_agrees(mesh, certificate, expected):

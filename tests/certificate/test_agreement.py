@@ -8,8 +8,8 @@ from meshes import square
 from perturbations import perturbed
 
 import anistar
-from anistar.consistency import ConsistencyOptions
-from anistar.remesh import RemeshOptions, remesh
+from anistar.remeshing.consistency_options import ConsistencyOptions
+from anistar.remeshing.remesh import RemeshOptions, remesh
 
 
 def layered(mesh, complexity=1500.0, factor=1.5):

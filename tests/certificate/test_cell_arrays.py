@@ -3,8 +3,8 @@ import pytest
 from cases import walled_case
 from meshes import square
 
-from anistar.cell_arrays import cell_arrays
-from anistar.certificate import certify
+from anistar.judging.cell_arrays import cell_arrays
+from anistar.judging.certificate import certify
 
 
 def test_the_distortion_of_cells_leads_to_that_of_vertices():

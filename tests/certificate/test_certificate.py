@@ -8,10 +8,10 @@ import pytest
 from cases import convex_case, metric_of, walled_case
 from meshes import square
 
-from anistar.certificate import certify, circumcentre, explain_star
-from anistar.mesh import Mesh
+from anistar.judging.certificate import certify, circumcentre, explain_star
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 from anistar.metric import MetricError
-from anistar.validation import validate
 
 
 def constant(mesh, M):

@@ -25,9 +25,9 @@ from tetrahedra import (
 )
 
 from anistar import _core
-from anistar.certificate import certify, circumcentre, explain_star
-from anistar.mesh import Mesh
-from anistar.validation import validate
+from anistar.judging.certificate import certify, circumcentre, explain_star
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 
 
 def assert_agrees(mesh, certificate, expected):

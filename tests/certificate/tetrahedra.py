@@ -11,7 +11,7 @@ import numpy as np
 from meshes import cube
 from scipy.spatial import Delaunay
 
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
 
 # Far above the rounding errors of the determinants below: what is smaller is computed again.
 DOUBTFUL = 1e-10

@@ -182,7 +182,7 @@ def test_an_interrupt_is_one_line_too(folder, capsys, monkeypatch):
     def interrupted(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("anistar.cli.convert.write", interrupted)
+    monkeypatch.setattr("anistar.cli.commands.convert.write", interrupted)
     assert run("convert in.vtu o.vtu") == 1
     assert capsys.readouterr().err == "anistar convert: interrupted\n"
 
@@ -230,7 +230,7 @@ def test_what_an_interrupted_loop_finished_is_kept(folder, capsys, monkeypatch):
 
     (folder / "solver.py").write_text(SECOND_CALL_FAILS)
     command = f"{sys.executable} solver.py {{mesh}} {{solution}}"
-    monkeypatch.setattr("anistar.loop._adapted", interrupted)
+    monkeypatch.setattr("anistar.loops.loop._adapted", interrupted)
     assert run("loop in.vtu --complexities 50 -o run", "--command", command) == 1
     assert capsys.readouterr().err == "anistar loop: interrupted\n"
     report = json.loads((folder / "run" / "report.json").read_text())
@@ -257,7 +257,7 @@ def test_a_failed_solution_leaves_the_old_mesh_beside_the_old_solution(folder, m
     def full(*arguments):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("anistar.formats.medit._solution_container", full)
+    monkeypatch.setattr("anistar.formats.medit.files._solution_container", full)
     assert run("convert in.vtu pair.mesh") == 2
     assert {path: (folder / path).read_bytes() for path in before} == before
 

@@ -10,13 +10,13 @@ from meshes import cube, square
 
 import anistar
 from anistar.cli import main
+from anistar.cli.diagnosis import ADAPTERS
 from anistar.cli.main import COMMANDS
-from anistar.doctor import ADAPTERS
-from anistar.fields import Field
 from anistar.formats import read, read_metric, write, write_metric
-from anistar.mesh import Mesh
+from anistar.meshes.fields import Field
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 from anistar.metric import complexity
-from anistar.validation import validate
 
 SOLVER = """
 import sys

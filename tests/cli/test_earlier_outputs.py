@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 from meshes import square
 
-from anistar import demo_volume
 from anistar.cli import main
-from anistar.demo_result import DEMO_FILES, PICTURES
+from anistar.demo import volume as demo_volume
+from anistar.demo.result import DEMO_FILES, PICTURES
 from anistar.formats import write
-from anistar.own_files import OwnFiles
+from anistar.runs.own_files import OwnFiles
 
 
 @pytest.fixture
@@ -31,7 +31,8 @@ def test_study_replaces_its_table_only_when_told(folder, monkeypatch, capsys):
         Path("old.png").write_text("mine")
         with monkeypatch.context() as guard:
             guard.setattr(
-                "anistar.cli.study.convergence_study", lambda *_, **__: pytest.fail("it ran")
+                "anistar.cli.commands.study.convergence_study",
+                lambda *_, **__: pytest.fail("it ran"),
             )
             assert study(flag, path) == 2
         said = f"{path.removeprefix('./')} exists: --force replaces it, or choose another name"
@@ -43,7 +44,7 @@ def test_study_replaces_its_table_only_when_told(folder, monkeypatch, capsys):
 
 def test_study_never_replaces_its_input_nor_writes_where_it_cannot(folder, monkeypatch, capsys):
     monkeypatch.setattr(
-        "anistar.cli.study.convergence_study", lambda *_, **__: pytest.fail("it ran")
+        "anistar.cli.commands.study.convergence_study", lambda *_, **__: pytest.fail("it ran")
     )
     before = Path("in.vtu").read_bytes()
     assert study("--csv", "in.vtu", "--force") == 2

@@ -12,8 +12,8 @@ from meshes import square
 
 import anistar
 from anistar.cli import main
-from anistar.fields import Field
-from anistar.mesh import Mesh
+from anistar.meshes.fields import Field
+from anistar.meshes.mesh import Mesh
 
 # One that exists; `solver` takes its place.
 COMMAND = f"{sys.executable} {{mesh}} {{solution}}"

@@ -6,9 +6,9 @@ from meshes import cube, square
 
 from anistar import metric
 from anistar.cli import main
-from anistar.fields import Field
 from anistar.formats import read, read_metric, write, write_metric
-from anistar.validation import validate
+from anistar.meshes.fields import Field
+from anistar.meshes.validation import validate
 
 
 @pytest.fixture(params=[2, 3])

@@ -10,8 +10,8 @@ from meshes import square
 import anistar
 from anistar.cli.main import main
 from anistar.cli.settling import add_settling_options, settling_options
-from anistar.keeping import KeepOptions
-from anistar.settling import Settled
+from anistar.loops.keeping import KeepOptions
+from anistar.loops.settling import Settled
 
 
 def parsed(*words):

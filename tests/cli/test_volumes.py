@@ -15,7 +15,7 @@ import anistar
 from anistar import Field, read, validate, write
 from anistar.cli import main
 from anistar.formats import read_metric, write_metric
-from anistar.topology import cell_volumes
+from anistar.meshes.topology import cell_volumes
 
 
 def run(words, *more):

@@ -9,7 +9,7 @@ from meshes import square
 
 from anistar import formats
 from anistar.errors import FormatError
-from anistar.file_solver import FileSolver
+from anistar.runs.file_solver import FileSolver
 
 HEAD = "MeshVersionFormatted 2\nDimension 2\n"
 POINTS = "Vertices\n5\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n9 9 0\n"

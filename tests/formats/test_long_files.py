@@ -8,7 +8,8 @@ import pytest
 
 from anistar import formats
 from anistar.errors import FormatError
-from anistar.formats import gmsh_reader, rows
+from anistar.formats.gmsh import reader as gmsh_reader
+from anistar.formats.parsing import rows
 
 N = 300_000
 MEDIT = (

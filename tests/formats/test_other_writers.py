@@ -9,7 +9,7 @@ from meshes import square, two_region_cube, two_regions
 
 from anistar import Field, Mesh, formats
 from anistar.errors import FormatError
-from anistar.validation import validate
+from anistar.meshes.validation import validate
 
 MAKERS = [two_regions, two_region_cube]
 

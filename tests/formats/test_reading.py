@@ -6,7 +6,7 @@ import pytest
 from meshes import cube, square, two_regions
 
 from anistar import formats
-from anistar.validation import validate
+from anistar.meshes.validation import validate
 
 MEDIT = """# made by hand
 MeshVersionFormatted

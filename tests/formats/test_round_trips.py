@@ -4,9 +4,9 @@ from meshes import annulus, rectangle_with_jitter, slit, square, two_region_cube
 
 from anistar import formats
 from anistar.errors import FormatError
-from anistar.fields import Field, as_fields
-from anistar.mesh import Mesh
-from anistar.validation import validate
+from anistar.meshes.fields import Field, as_fields
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 
 NAMED = [".vtu", ".msh", ".mesh"]
 ALL = [*NAMED, ".meshb", ".vtk"]

@@ -9,9 +9,9 @@ from metric_fields import metric_field
 
 import anistar
 from anistar import _core
-from anistar.mesh import Mesh
-from anistar.remesh import RemeshOptions
-from anistar.topology import cell_volumes, facet_measures, measure_by_tag
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes, facet_measures, measure_by_tag
+from anistar.remeshing.remesh import RemeshOptions
 
 
 @dataclass(frozen=True)

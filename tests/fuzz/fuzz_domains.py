@@ -11,8 +11,8 @@ import numpy as np
 from meshes import compacted, grid
 from scipy.spatial import Delaunay
 
-from anistar.mesh import Mesh
-from anistar.topology import facet_table
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import facet_table
 
 
 @dataclass(frozen=True)

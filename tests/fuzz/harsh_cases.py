@@ -10,9 +10,9 @@ from harsh_volumes import harsh_volume
 from meshes import compacted, grid
 from volume_domains import boxes, positive
 
-from anistar.consistency import ConsistencyOptions
-from anistar.mesh import Mesh
-from anistar.remesh import RemeshOptions
+from anistar.meshes.mesh import Mesh
+from anistar.remeshing.consistency_options import ConsistencyOptions
+from anistar.remeshing.remesh import RemeshOptions
 
 LARGEST = {2: 400.0, 3: 50.0}
 """Complexity of the metrics that are meant to be met; others are cut off by a budget."""

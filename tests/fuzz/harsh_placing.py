@@ -3,8 +3,8 @@
 import numpy as np
 from volume_metrics import turned
 
-from anistar.mesh import Mesh
-from anistar.topology import facet_table
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import facet_table
 
 FARTHEST, LARGEST = 6, 9
 """Decades: of the distance from the origin in sizes of the domain, and of the size."""

@@ -9,7 +9,7 @@ from harsh_cases import make_harsh_case
 from harsh_judgement import run_harsh_case
 from meshes import square
 
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
 from anistar.metric.gradation import GrowthLaw, grade_on, wide_graph
 
 

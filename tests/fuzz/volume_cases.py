@@ -6,8 +6,14 @@ from volume_domains import FLAT, volume_domain
 from volume_metrics import volume_metric
 
 import anistar
-from anistar.remesh import RemeshOptions
-from anistar.topology import cell_volumes, edge_lengths, facet_measures, facet_table, measure_by_tag
+from anistar.meshes.topology import (
+    cell_volumes,
+    edge_lengths,
+    facet_measures,
+    facet_table,
+    measure_by_tag,
+)
+from anistar.remeshing.remesh import RemeshOptions
 
 
 def make_volume_case(seed, number, *, largest=1000.0):

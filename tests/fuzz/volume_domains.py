@@ -11,8 +11,8 @@ from fuzz_domains import Domain
 from meshes import compacted
 from scipy.spatial import Delaunay
 
-from anistar.mesh import Mesh
-from anistar.topology import facet_table
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import facet_table
 
 PERMUTATIONS = np.array([[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]])
 

@@ -9,13 +9,13 @@ from meshes import square
 skfem = pytest.importorskip("skfem")
 pytest.importorskip("matplotlib")
 
-from anistar import demo_problem  # noqa: E402
 from anistar.adapters.skfem import from_skfem, to_skfem  # noqa: E402
-from anistar.demo import run_demo, stages  # noqa: E402
+from anistar.demo import problem as demo_problem  # noqa: E402
+from anistar.demo.plane import run_demo, stages  # noqa: E402
 from anistar.formats import read  # noqa: E402
-from anistar.interpolation_error import l2_norm  # noqa: E402
+from anistar.judging.interpolation_error import l2_norm  # noqa: E402
+from anistar.meshes.validation import validate  # noqa: E402
 from anistar.transfer import transfer  # noqa: E402
-from anistar.validation import validate  # noqa: E402
 
 EXAMPLES = Path(__file__).parents[2] / "solver_examples" / "scikit_fem"
 

@@ -9,14 +9,14 @@ from contextlib import suppress
 
 import pytest
 
-from anistar import folder_lock
 from anistar.errors import FormatError
-from anistar.folder_lock import LOCK, TAKEOVER, locked
+from anistar.runs import lock
+from anistar.runs.lock import LOCK, TAKEOVER, locked
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from anistar.folder_lock import locked
+from anistar.runs.lock import locked
 with locked(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(60)
@@ -75,7 +75,7 @@ def no_locks(*arguments):
 
 def without_locks(monkeypatch, lacks):
     if lacks == "module":
-        monkeypatch.setattr(folder_lock, "fcntl", None)
+        monkeypatch.setattr(lock, "fcntl", None)
     elif lacks == "file system":
         monkeypatch.setattr("fcntl.flock", no_locks)
 
@@ -138,9 +138,9 @@ COME_AND_GO = """
 import os, sys, time
 from contextlib import suppress
 from pathlib import Path
-from anistar import folder_lock
+from anistar.runs import lock
 from anistar.errors import FormatError
-folder_lock.fcntl = None
+lock.fcntl = None
 folder, other = Path(sys.argv[1]), Path(sys.argv[1]) / "inside"
 (folder / f"ready_{sys.argv[2]}").touch()
 end = time.monotonic() + 60
@@ -148,7 +148,7 @@ while len(list(folder.glob("ready_*"))) < 2 and time.monotonic() < end:
     time.sleep(0.001)
 times = 0
 for _ in range(300):
-    with suppress(FormatError), folder_lock.locked(folder):
+    with suppress(FormatError), lock.locked(folder):
         os.close(os.open(other, os.O_CREAT | os.O_EXCL))  # fails where another is inside
         times += 1
         other.unlink()

@@ -12,12 +12,12 @@ from meshes import cube, square
 import anistar
 from anistar.cli import main
 from anistar.errors import FormatError
-from anistar.loop import LoopOptions, adapt_loop
-from anistar.run_folder import RunFolder
+from anistar.loops.loop import LoopOptions, adapt_loop
+from anistar.runs.folder import RunFolder
 
 pytest.importorskip("matplotlib")
 
-from anistar.html_report import write_html_report
+from anistar.runs.html_report import write_html_report
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
@@ -99,7 +99,7 @@ def test_a_page_about_a_3d_loop_shows_the_mesh_from_outside_and_cut(tmp_path):
     folder = RunFolder(tmp_path, {})
     mesh = cube()
     folder.save(
-        anistar.loop.Step(
+        anistar.loops.loop.Step(
             0, None, mesh, {"u": mesh.points[:, 0]}, None, None, None, {"u": 0.1}, 1.0
         )
     )

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from meshes import annulus, cube, square
 
-from anistar.adapt import AdaptOptions
 from anistar.errors import MeshingError
-from anistar.fields import Field
-from anistar.interpolation_error import interpolation_error
-from anistar.keeping import KeepOptions, needs_adaptation
-from anistar.loop import LoopError, adapt_loop
-from anistar.loop_options import LoopOptions
+from anistar.judging.interpolation_error import interpolation_error
+from anistar.loops.adapt import AdaptOptions
+from anistar.loops.keeping import KeepOptions, needs_adaptation
+from anistar.loops.loop import LoopError, adapt_loop
+from anistar.loops.loop_options import LoopOptions
+from anistar.loops.settling import Settled
+from anistar.meshes.fields import Field
+from anistar.meshes.topology import cell_volumes
+from anistar.meshes.validation import validate
 from anistar.metric import MetricOptions, from_fields
-from anistar.remesh import RemeshOptions
-from anistar.settling import Settled
-from anistar.topology import cell_volumes
-from anistar.validation import validate
+from anistar.remeshing.remesh import RemeshOptions
 
 
 def layer(points):

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from meshes import cube, square
 
+from anistar.cli.expression import function_of_position
 from anistar.errors import FormatError
-from anistar.expression import function_of_position
 from anistar.report import as_builtin, to_json, write_json
-from anistar.series import write_series
+from anistar.runs.series import write_series
 
 pytest.importorskip("matplotlib")
 
-from anistar import pictures
+from anistar.pictures import plane as pictures
 
 
 @dataclass(frozen=True)

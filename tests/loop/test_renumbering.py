@@ -5,10 +5,10 @@ import pytest
 from meshes import cube, rectangle_with_jitter, square, two_region_cube
 
 import anistar
-from anistar.fields import Field
-from anistar.mesh import Mesh
-from anistar.renumbering import renumbering
-from anistar.topology import unique_edges, vector_lengths
+from anistar.meshes.fields import Field
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.renumbering import renumbering
+from anistar.meshes.topology import unique_edges, vector_lengths
 
 MESHES = {"square": square, "jitter": rectangle_with_jitter, "cube": two_region_cube}
 

@@ -15,8 +15,8 @@ from meshes import square
 import anistar
 from anistar.cli import main
 from anistar.errors import FormatError
-from anistar.loop import LoopOptions, adapt_loop
-from anistar.run_folder import RunFolder
+from anistar.loops.loop import LoopOptions, adapt_loop
+from anistar.runs.folder import RunFolder
 
 SOLVER = """
 import os, pathlib, sys, time
@@ -85,7 +85,7 @@ def test_a_step_that_cannot_be_saved_is_not_in_the_report_nor_is_an_older_one(fo
         raise FormatError(f"cannot write {path}: No space left on device")
 
     with monkeypatch.context() as disk:
-        disk.setattr("anistar.run_folder.write", full)
+        disk.setattr("anistar.runs.folder.write", full)
         assert main(arguments("run", "--force")) == 2
     report = json.loads(Path("run/report.json").read_text())
     assert report["steps"] == []

@@ -5,9 +5,9 @@ import pytest
 from meshes import cube, square
 
 from anistar.errors import MeshingError
-from anistar.settling import Settled
-from anistar.study import convergence_study, observed_order
-from anistar.validation import validate
+from anistar.loops.settling import Settled
+from anistar.loops.study import convergence_study, observed_order
+from anistar.meshes.validation import validate
 
 
 def layer(points):

@@ -6,8 +6,8 @@ from meshes import cube, square
 from perturbations import PERTURBATIONS, perturbed
 
 import anistar
-from anistar.series import SeriesWriter
-from anistar.unsteady import UnsteadyOptions, unsteady_loop
+from anistar.loops.unsteady import UnsteadyOptions, unsteady_loop
+from anistar.runs.series import SeriesWriter
 
 ADAPT = anistar.AdaptOptions.from_dict({"target_complexity": 200})
 TIMES = np.linspace(0.0, 0.4, 9)

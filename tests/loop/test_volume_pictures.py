@@ -5,10 +5,10 @@ import pytest
 from meshes import square
 
 from anistar import validate
-from anistar.demo_volume import unit_cube
+from anistar.demo.volume import unit_cube
 
 pytest.importorskip("matplotlib")
-from anistar.volume_pictures import volume_picture
+from anistar.pictures.volume import volume_picture
 
 MESH = unit_cube(3)
 

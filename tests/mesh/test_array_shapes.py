@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from meshes import square
 
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
 
 
 @pytest.mark.parametrize(

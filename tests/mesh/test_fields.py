@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from meshes import square
 
-from anistar.fields import Field, as_fields
+from anistar.meshes.fields import Field, as_fields
 
 
 def test_bare_arrays_live_on_points_and_their_kind_is_deduced():

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from meshes import annulus, cube, grid, l_shape, slit, square, two_region_cube, two_regions
 
-from anistar.mesh import Mesh
-from anistar.topology import cell_volumes, facet_measures, facet_normals
-from anistar.validation import validate
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes, facet_measures, facet_normals
+from anistar.meshes.validation import validate
 
 TRIANGLE = {"points": [[0, 0], [1, 0], [0, 1]], "cells": [[0, 1, 2]]}
 ALL = [annulus, cube, l_shape, slit, square, two_region_cube, two_regions]

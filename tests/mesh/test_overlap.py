@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from meshes import annulus, cube, grid, rectangle_with_jitter, square
 
-from anistar import overlap
-from anistar.mesh import Mesh
-from anistar.validation import validate
+from anistar.meshes import overlap
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 
 
 def joined(*parts):

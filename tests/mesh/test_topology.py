@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from meshes import cube, square, two_regions
 
-from anistar import topology
-from anistar.topology import RowKeys
+from anistar.meshes import topology
+from anistar.meshes.topology import RowKeys
 
 
 @pytest.mark.parametrize("make", [square, cube])

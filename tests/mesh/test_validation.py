@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from meshes import annulus, cube, square, two_region_cube, two_regions
 
-from anistar.mesh import Mesh
-from anistar.validation import validate
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 
 
 def changed(mesh, **changes):

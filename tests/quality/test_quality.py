@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from meshes import cube, rectangle_with_jitter, square
 
-from anistar.mesh import Mesh
-from anistar.quality import mean_ratios, metric_lengths, quality
+from anistar.judging.quality import mean_ratios, metric_lengths, quality
+from anistar.meshes.mesh import Mesh
 
 
 def equilateral():

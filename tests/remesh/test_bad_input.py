@@ -7,12 +7,12 @@ import pytest
 from meshes import cube, square, two_regions
 from shapes import uniform
 
-from anistar.consistency import ConsistencyOptions
 from anistar.errors import MeshingError
-from anistar.fidelity import tag_measures
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
 from anistar.metric import MetricError
-from anistar.remesh import RemeshOptions, remesh
+from anistar.remeshing.consistency_options import ConsistencyOptions
+from anistar.remeshing.fidelity import tag_measures
+from anistar.remeshing.remesh import RemeshOptions, remesh
 
 
 def damaged(index, tensor):

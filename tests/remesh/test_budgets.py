@@ -14,8 +14,8 @@ from meshes import square, two_regions
 from shapes import angles, arc_metric, fan, on_circle, on_clover, rotating_metric, uniform
 
 from anistar.errors import MeshingError
-from anistar.remesh import RemeshOptions, remesh
-from anistar.validation import validate
+from anistar.meshes.validation import validate
+from anistar.remeshing.remesh import RemeshOptions, remesh
 
 PHASES = ["curves", "size", "shape", "agreement", "certificate", "report"]
 

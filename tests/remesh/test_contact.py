@@ -5,10 +5,10 @@ import pytest
 from shapes import uniform
 
 from anistar import validate
-from anistar.contact import check_curves
 from anistar.errors import MeshingError
-from anistar.mesh import Mesh
-from anistar.remesh import RemeshOptions, remesh
+from anistar.meshes.mesh import Mesh
+from anistar.remeshing.contact import check_curves
+from anistar.remeshing.remesh import RemeshOptions, remesh
 
 
 def needle(thickness, far):

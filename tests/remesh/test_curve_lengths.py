@@ -5,8 +5,8 @@ import pytest
 from surface.smooth_shapes import ball, torus
 
 from anistar import RemeshOptions, remesh, validate
-from anistar.mesh import Mesh
-from anistar.topology import facet_measures
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import facet_measures
 
 
 def uniform(mesh, h):

@@ -8,7 +8,7 @@ from meshes import square
 from shapes import rotating_metric, sectors, stretched
 
 import anistar
-from anistar.remesh import RemeshOptions, remesh
+from anistar.remeshing.remesh import RemeshOptions, remesh
 
 
 def disagreeing(mesh, M):

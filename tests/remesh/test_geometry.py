@@ -15,9 +15,9 @@ from shapes import (
     uniform,
 )
 
-from anistar.mesh import Mesh
-from anistar.remesh import RemeshOptions, remesh
-from anistar.validation import validate
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
+from anistar.remeshing.remesh import RemeshOptions, remesh
 
 
 def ends(mesh, tag):

@@ -8,8 +8,8 @@ from meshes import square
 from shapes import angles, fan, on_circle, uniform
 
 from anistar.errors import MeshingError
-from anistar.remesh import RemeshOptions, remesh
-from anistar.validation import validate
+from anistar.meshes.validation import validate
+from anistar.remeshing.remesh import RemeshOptions, remesh
 
 
 def test_a_projection_that_sends_points_away_is_refused_with_point_tag_distance_and_bound():

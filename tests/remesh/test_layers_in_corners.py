@@ -10,10 +10,10 @@ from meshes import square
 from shapes import scaled_to
 
 from anistar import Mesh, remesh, validate
-from anistar.long_edges import longest_edges
+from anistar.judging.quality import mean_ratios, metric_lengths
+from anistar.meshes.topology import unique_edges
 from anistar.metric import MetricOptions, from_fields
-from anistar.quality import mean_ratios, metric_lengths
-from anistar.topology import unique_edges
+from anistar.remeshing.long_edges import longest_edges
 
 FLOOR = 0.1
 

@@ -9,10 +9,11 @@ from meshes import cube, square
 from remesh3d import domains
 from shapes import angles, fan, on_circle, uniform
 
-from anistar import demand, memory
+from anistar import memory
 from anistar.errors import MeshingError
-from anistar.remesh import RemeshOptions, remesh
-from anistar.validation import validate
+from anistar.meshes.validation import validate
+from anistar.remeshing import demand
+from anistar.remeshing.remesh import RemeshOptions, remesh
 
 
 @pytest.fixture

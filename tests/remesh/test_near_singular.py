@@ -12,8 +12,8 @@ from shapes import uniform
 
 import anistar
 from anistar import MeshingError, RemeshOptions, certify, remesh, transfer, validate
+from anistar.judging.quality import quality
 from anistar.metric import MetricError, check_metric
-from anistar.quality import quality
 
 ONE_TRIANGLE = """
 import numpy as np, anistar
@@ -115,7 +115,7 @@ def test_the_unit_of_length_does_not_matter_up_to_the_range_of_doubles(scale):
 
 
 def test_a_failure_inside_of_the_core_is_an_error_and_leaves_the_input_alone(monkeypatch):
-    monkeypatch.setattr(import_module("anistar.remesh"), "check_metric", opened_door)
+    monkeypatch.setattr(import_module("anistar.remeshing.remesh"), "check_metric", opened_door)
     mesh = one_triangle()
     M = np.tile(np.eye(2), (3, 1, 1))
     M[1] = [[1.0, 2.0], [2.0, 1.0]]

@@ -9,8 +9,8 @@ from scipy.spatial import ConvexHull
 from surface.smooth_shapes import ball
 
 from anistar import AdaptOptions, RemeshOptions, remesh, validate
-from anistar.mesh import Mesh
-from anistar.topology import cell_volumes, facet_measures
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes, facet_measures
 
 POLYHEDRON = RemeshOptions(shape="polyhedron")
 

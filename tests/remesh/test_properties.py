@@ -25,12 +25,12 @@ from shapes import (
 )
 
 from anistar import _core
-from anistar.interpolation_error import l2_error
-from anistar.mesh import Mesh
+from anistar.judging.interpolation_error import l2_error
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes
+from anistar.meshes.validation import validate
 from anistar.metric import complexity, interpolated
-from anistar.remesh import remesh
-from anistar.topology import cell_volumes
-from anistar.validation import validate
+from anistar.remeshing.remesh import remesh
 
 
 def changed(mesh, **arrays):

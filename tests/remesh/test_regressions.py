@@ -5,9 +5,9 @@ import pytest
 from meshes import grid, square, two_region_cube, two_regions
 
 import anistar
-from anistar.mesh import Mesh
-from anistar.remesh import RemeshOptions
-from anistar.topology import cell_volumes, measure_by_tag
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes, measure_by_tag
+from anistar.remeshing.remesh import RemeshOptions
 
 
 def sizes(mesh, h):

@@ -5,8 +5,8 @@ import pytest
 from shapes import sectors, stretched, uniform
 
 import anistar
-from anistar.mesh import Mesh
-from anistar.remesh import RemeshOptions
+from anistar.meshes.mesh import Mesh
+from anistar.remeshing.remesh import RemeshOptions
 
 ANGLES = [5, 7, 10, 15, 20, 30, 40, 50, 59]
 """Degrees, all of them sharp."""

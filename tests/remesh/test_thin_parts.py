@@ -8,8 +8,8 @@ from meshes import annulus, square
 from shapes import uniform
 
 from anistar import Mesh, RemeshOptions, remesh, validate
-from anistar.bad_cells import quality_bound
-from anistar.quality import mean_ratios
+from anistar.judging.quality import mean_ratios
+from anistar.remeshing.bad_cells import quality_bound
 
 
 def strip(n, thickness):

@@ -6,7 +6,7 @@ from meshes import annulus, square, two_regions
 from shapes import arc_metric, linear_metric, rotating_metric, sectors, stretched
 
 import anistar
-from anistar.remesh import RemeshOptions, remesh
+from anistar.remeshing.remesh import RemeshOptions, remesh
 
 SEVERAL_BLOCKS = 8 * 1024  # vertices; see Blocks in plugin/core/mesh/blocks.h
 

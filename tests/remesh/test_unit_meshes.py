@@ -5,11 +5,11 @@ import pytest
 from meshes import rectangle_with_jitter, square
 from shapes import arc_metric, linear_metric, rotating_metric, uniform
 
-from anistar.mesh import Mesh
-from anistar.quality import quality
-from anistar.remesh import remesh
-from anistar.topology import cell_volumes
-from anistar.validation import validate
+from anistar.judging.quality import quality
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes
+from anistar.meshes.validation import validate
+from anistar.remeshing.remesh import remesh
 
 
 def angles_of(mesh):

@@ -15,7 +15,7 @@ from anistar import (
     write,
 )
 from anistar.cli.main import main
-from anistar.demo_volume import front, run_volume_demo, unit_cube
+from anistar.demo.volume import front, run_volume_demo, unit_cube
 
 
 def test_adapt_makes_the_front_sharper():

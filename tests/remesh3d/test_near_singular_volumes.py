@@ -10,8 +10,8 @@ from remesh3d.domains import changed, uniform
 
 import anistar
 from anistar import MeshingError, RemeshOptions, certify, remesh, validate
+from anistar.judging.quality import quality
 from anistar.metric import MetricError, check_metric
-from anistar.quality import quality
 
 TETRAHEDRON = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 
@@ -45,7 +45,7 @@ def test_the_core_keeps_interpolated_metrics_definite_by_itself(monkeypatch, see
     was to refuse the move passed over NaN; nothing is nearest to such a place, and the cell
     number -1 of that was read from in front of the array of the cells.
     """
-    monkeypatch.setattr(import_module("anistar.remesh"), "check_metric", opened_door)
+    monkeypatch.setattr(import_module("anistar.remeshing.remesh"), "check_metric", opened_door)
     mesh = cube(1)
     M = near_singular(mesh, seed, least=1e15, most=3e15)
     done = remesh(mesh, M, RemeshOptions(max_vertices=200, max_refinement=None))
@@ -55,7 +55,7 @@ def test_the_core_keeps_interpolated_metrics_definite_by_itself(monkeypatch, see
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_a_metric_without_logarithm_is_an_error_inside_of_the_core_too(monkeypatch, threads):
-    monkeypatch.setattr(import_module("anistar.remesh"), "check_metric", opened_door)
+    monkeypatch.setattr(import_module("anistar.remeshing.remesh"), "check_metric", opened_door)
     mesh = cube(2)
     M = uniform(mesh, 0.2)
     M[13, 0, 1] = M[13, 1, 0] = 50.0

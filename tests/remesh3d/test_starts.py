@@ -9,8 +9,8 @@ from remesh3d.domains import changed, jittered_cube, layer, turning, uniform
 from scipy.spatial import Delaunay
 
 from anistar import Mesh, RemeshOptions, remesh, validate
-from anistar.bad_cells import worst_cells
-from anistar.quality import mean_ratios
+from anistar.judging.quality import mean_ratios
+from anistar.remeshing.bad_cells import worst_cells
 
 OPTIONS = RemeshOptions(agreement=False)
 

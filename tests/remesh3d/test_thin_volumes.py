@@ -6,7 +6,7 @@ from domains import changed, uniform
 from meshes import cube, two_region_cube
 
 from anistar import RemeshOptions, remesh, validate
-from anistar.quality import mean_ratios
+from anistar.judging.quality import mean_ratios
 
 
 def plate(n, thickness):

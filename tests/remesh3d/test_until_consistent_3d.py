@@ -9,7 +9,7 @@ from meshes import cube, two_region_cube
 from remesh3d.domains import cube_with_ridges, cube_with_sheet, layer, touching_cubes, uniform
 
 from anistar import RemeshOptions, certify, remesh, validate
-from anistar.consistency import ConsistencyOptions
+from anistar.remeshing.consistency_options import ConsistencyOptions
 
 INSERTING = RemeshOptions(agreement=False, until_consistent=True)
 

@@ -7,8 +7,8 @@ from remesh3d.domains import changed, layer, rotated, turning, uniform
 from remesh3d.test_curved import ball, cylinder, rim_of
 
 from anistar import Mesh, MeshingError, RemeshOptions, remesh, validate
+from anistar.meshes.topology import cell_volumes, edge_lengths, facet_measures, unique_edges
 from anistar.metric import curvature_metric, intersected
-from anistar.topology import cell_volumes, edge_lengths, facet_measures, unique_edges
 
 
 def onto_wall(points, tag):

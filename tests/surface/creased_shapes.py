@@ -5,7 +5,7 @@ import math
 import numpy as np
 from meshes import cube
 
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
 
 TOP = 6
 

@@ -3,7 +3,7 @@
 import numpy as np
 from meshes import cube
 
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
 
 
 def ball(n, radius=1.0):

@@ -9,8 +9,8 @@ from smooth_shapes import ball, bent_block
 
 import anistar
 from anistar import RemeshOptions, _core
-from anistar.fidelity import measures_of, smooth_shape
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
+from anistar.remeshing.fidelity import measures_of, smooth_shape
 from anistar.telling import telling_once
 
 

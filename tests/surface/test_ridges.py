@@ -8,8 +8,8 @@ from scipy.spatial import ConvexHull
 from smooth_shapes import ball
 
 from anistar import RemeshOptions, remesh, validate
-from anistar.curvature import smooth_surface
-from anistar.mesh import Mesh
+from anistar.judging.curvature import smooth_surface
+from anistar.meshes.mesh import Mesh
 
 
 def uniform(mesh, h):

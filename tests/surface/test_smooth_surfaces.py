@@ -8,8 +8,8 @@ from meshes import cube
 from smooth_shapes import ball, bent_block, samples, torus
 
 from anistar import remesh, validate
-from anistar.curvature import smooth_surface, surface_curvature
-from anistar.mesh import Mesh
+from anistar.judging.curvature import smooth_surface, surface_curvature
+from anistar.meshes.mesh import Mesh
 from anistar.metric import curvature_metric
 
 

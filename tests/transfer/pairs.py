@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 from meshes import compacted, cube, grid, square
 from scipy.spatial import Delaunay
 
-from anistar.mesh import Mesh
-from anistar.topology import cell_volumes
-from anistar.validation import validate
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes
+from anistar.meshes.validation import validate
 
 SLOPE = np.array([1.5, -2.0, 0.25])
 

@@ -5,7 +5,7 @@ from meshes import annulus
 from pairs import centroids, disc_indicator, halves, jittered, pairs, scattered, with_regions
 
 from anistar import Field, TransferOptions, transfer, transfer_operator
-from anistar.interpolation_error import l2_error
+from anistar.judging.interpolation_error import l2_error
 from anistar.transfer import supermesh
 
 

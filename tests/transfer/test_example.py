@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from anistar.validation import validate
+from anistar.meshes.validation import validate
 
 pytest.importorskip("matplotlib")
 

@@ -7,7 +7,7 @@ from scipy.sparse import csr_array
 
 from anistar import Field, transfer
 from anistar.transfer import supermesh
-from anistar.transfer.labels import majority
+from anistar.transfer.values.labels import majority
 
 
 def test_the_label_with_the_largest_sum_wins_and_ties_take_the_smallest():

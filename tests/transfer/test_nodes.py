@@ -6,7 +6,7 @@ from pairs import jittered, linear, pairs, with_regions
 
 from anistar import Field, transfer
 from anistar.transfer import integral, node_positions
-from anistar.transfer.nodes import n_nodes, node_basis, node_coordinates
+from anistar.transfer.values.nodes import n_nodes, node_basis, node_coordinates
 
 
 def quadratic(x):

@@ -5,7 +5,7 @@ from meshes import annulus, cube, square
 from pairs import disc_indicator, halves, pairs, with_regions
 
 from anistar import Field, transfer, transfer_operator
-from anistar.topology import cell_volumes
+from anistar.meshes.topology import cell_volumes
 
 LINEAR = [
     (method, on, order)

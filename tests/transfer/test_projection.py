@@ -18,12 +18,12 @@ from pairs import (
 )
 
 from anistar import Field, MeshingError, TransferOptions, transfer
-from anistar.interpolation_error import l2_error
-from anistar.mesh import Mesh
-from anistar.topology import cell_volumes
+from anistar.judging.interpolation_error import l2_error
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes
 from anistar.transfer import integral
-from anistar.transfer.measure import cell_integrals
 from anistar.transfer.regions import common_regions, sums_by_region
+from anistar.transfer.values.measure import cell_integrals
 
 PROJECTIONS = ("conservative", "bounded")
 
@@ -294,7 +294,7 @@ def test_threads_out_of_their_bounds_are_named(threads):
 
 
 def test_a_mass_matrix_that_cannot_be_solved_is_an_error():
-    from anistar.transfer.mass import mass
+    from anistar.transfer.projection.mass import mass
 
     with pytest.raises(MeshingError, match="9 unknowns came upon numbers that are not finite"):
         mass(square(2)).solved(np.full(9, np.nan))

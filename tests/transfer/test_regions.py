@@ -8,10 +8,10 @@ from meshes import square, two_regions
 from pairs import centroids, halves, jittered, with_regions
 
 from anistar import Field, TransferOptions, transfer
-from anistar.mesh import Mesh
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.validation import validate
 from anistar.transfer import supermesh
-from anistar.transfer.projection import Projector
-from anistar.validation import validate
+from anistar.transfer.projection.l2_projection import Projector
 
 
 def in_strips(n):

@@ -7,10 +7,10 @@ from pairs import flattened, jittered, linear, pairs, scattered, with_regions
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from anistar import _core
-from anistar.mesh import Mesh
-from anistar.topology import cell_volumes
+from anistar.meshes.mesh import Mesh
+from anistar.meshes.topology import cell_volumes
 from anistar.transfer import supermesh
-from anistar.transfer.mass import hat_integrals, mass
+from anistar.transfer.projection.mass import hat_integrals, mass
 
 
 def halfspaces(corners):

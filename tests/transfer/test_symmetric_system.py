@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array, diags_array
 
 from anistar import MeshingError, _core
-from anistar.transfer.symmetric_system import SymmetricSystem
+from anistar.transfer.projection.symmetric_system import SymmetricSystem
 
 
 def laplacian(n, shift=0.0):

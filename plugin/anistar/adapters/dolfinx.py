@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .. import dolfinx_wheel
-from ..mesh import Mesh
-from ..topology import RowKeys, cell_determinants
+from ..meshes.mesh import Mesh
+from ..meshes.topology import RowKeys, cell_determinants
+from . import dolfinx_wheel
 
 dolfinx_wheel.make_importable()
 try:

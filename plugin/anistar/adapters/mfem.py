@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..mesh import Mesh
-from ..topology import cell_determinants
+from ..meshes.mesh import Mesh
+from ..meshes.topology import cell_determinants
 
 try:
     from mfem import ser as mfem

@@ -11,7 +11,7 @@ import importlib
 import runpy
 import sys
 
-from .. import dolfinx_wheel
+from . import dolfinx_wheel
 
 
 def main() -> None:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..mesh import Mesh
-from ..topology import RowKeys, cell_determinants
+from ..meshes.mesh import Mesh
+from ..meshes.topology import RowKeys, cell_determinants
 
 try:
     from skfem import MeshTet, MeshTri

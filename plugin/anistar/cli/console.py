@@ -14,7 +14,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from ..remesh_report import RemeshReport
+from ..remeshing.report import RemeshReport
 from ..report import to_json
 from .streams import complain, readers_may_leave
 

@@ -10,7 +10,19 @@ from contextlib import suppress
 from typing import NoReturn
 
 from ..errors import MeshingError
-from . import adapt, check, convert, demo, doctor, loop, metric, remesh, report, study, transfer
+from .commands import (
+    adapt,
+    check,
+    convert,
+    demo,
+    doctor,
+    loop,
+    metric,
+    remesh,
+    report,
+    study,
+    transfer,
+)
 from .options import canonical_flags
 from .streams import complain, open_closed_streams, readers_may_leave
 

@@ -6,8 +6,8 @@ import argparse
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from ..adapt import AdaptOptions
-from ..aliases import MMG
+from ..loops.adapt import AdaptOptions
+from ..loops.aliases import MMG
 from ..metric.aliases import PETSC_PREFIX, asks_nothing, our_name, our_value
 from ..transfer import METHODS, OUTSIDE
 

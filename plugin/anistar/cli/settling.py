@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from ..keeping import KeepOptions
-from ..settling import Settled
+from ..loops.keeping import KeepOptions
+from ..loops.settling import Settled
 from .options import numbers
 
 OFF = "off"

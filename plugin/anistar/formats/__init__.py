@@ -11,28 +11,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..atomic import replaced
 from ..errors import FormatError
-from ..fields import Field, as_fields
-from ..mesh import Mesh
-from ..topology import Float
-from . import (
-    gmsh,
-    gmsh_reader,
-    inp_reader,
-    medit,
-    meshio_writer,
-    su2,
-    su2_reader,
-    vtk_reader,
-    vtu,
-    vtu_reader,
-    xdmf_reader,
-)
-from .assembly import ReadReport, assembled
-from .atomic import replaced
-from .export import exported
-from .raw import RawMesh
+from ..meshes.fields import Field, as_fields
+from ..meshes.mesh import Mesh
+from ..meshes.topology import Float
+from . import inp_reader, meshio_writer, su2_reader, su2_writer, xdmf_reader
+from .content.assembly import ReadReport, assembled
+from .content.export import exported
+from .content.raw import RawMesh
+from .gmsh import reader as gmsh_reader
+from .gmsh import writer as gmsh_writer
+from .medit import files as medit_files
 from .suffixes import SOLUTIONS, suffix_of
+from .vtk import legacy_reader, vtu_reader, vtu_writer
 
 __all__ = [
     "FormatError",
@@ -50,22 +42,22 @@ _log = logging.getLogger(__name__)
 PathLike = str | os.PathLike[str]
 
 _READERS: dict[str, Callable[[Path], RawMesh]] = {
-    ".mesh": medit.read_mesh,
-    ".meshb": medit.read_mesh,
+    ".mesh": medit_files.read_mesh,
+    ".meshb": medit_files.read_mesh,
     ".inp": inp_reader.read,
     ".msh": gmsh_reader.read,
     ".su2": su2_reader.read,
-    ".vtk": vtk_reader.read,
+    ".vtk": legacy_reader.read,
     ".vtu": vtu_reader.read,
     ".xdmf": xdmf_reader.read,
     ".xmf": xdmf_reader.read,
 }
 _WRITERS: dict[str, Callable[[Path, Mesh, Mapping[str, Field]], None]] = {
-    ".mesh": medit.write_mesh,
-    ".meshb": medit.write_mesh,
-    ".msh": gmsh.write,
-    ".su2": su2.write,
-    ".vtu": vtu.write,
+    ".mesh": medit_files.write_mesh,
+    ".meshb": medit_files.write_mesh,
+    ".msh": gmsh_writer.write,
+    ".su2": su2_writer.write,
+    ".vtu": vtu_writer.write,
 }
 METRIC = "metric"
 
@@ -145,7 +137,7 @@ def write(
         _WRITERS[suffix_of(path)](path, mesh, checked)
         return
     if suffix_of(path) in SOLUTIONS:
-        medit.write_solution(path, mesh, checked)
+        medit_files.write_solution(path, mesh, checked)
         return
     if not is_known(path):
         raise FormatError(f"cannot write {path}: no format has the suffix {path.suffix!r}")
@@ -200,7 +192,7 @@ def read_metric(path: PathLike, mesh: Mesh) -> Float:
 
 def _metric_field(path: Path) -> tuple[str, Any]:
     if suffix_of(path) in SOLUTIONS:
-        arrays = medit.read_solution(path).arrays("SolAtVertices")
+        arrays = medit_files.read_solution(path).arrays("SolAtVertices")
         if len(arrays) != 1:
             raise FormatError(f"{path}: a metric is one field at the points, not {len(arrays)}")
         return next(iter(arrays.items()))

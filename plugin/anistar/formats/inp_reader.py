@@ -16,11 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
-from .allowance import Allowance
-from .numbering import Numbering
-from .raw import KIND_DIM, Array, Block, RawMesh
-from .reading import reading
-from .text_rows import integers, parsed
+from .content.raw import KIND_DIM, Array, Block, RawMesh
+from .parsing.allowance import Allowance
+from .parsing.numbering import Numbering
+from .parsing.reading import reading
+from .parsing.text_rows import integers, parsed
 
 _KEYWORD = re.compile(r"^\*([^,\n]*)(.*)$", re.MULTILINE)
 _COMMENT = re.compile(r"^\*\*.*$", re.MULTILINE)

@@ -12,10 +12,10 @@ import meshio
 import numpy as np
 
 from ..errors import FormatError
-from .raw import RawMesh
+from .content.raw import RawMesh
+from .content.tag_arrays import TAGS, refuse_reserved
 from .suffixes import suffix_of
-from .tag_arrays import TAGS, refuse_reserved
-from .vtk_reader import OWN_TITLE
+from .vtk.legacy_reader import OWN_TITLE
 
 _XDMF = (".xdmf", ".xmf")
 

@@ -14,11 +14,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..topology import Float
-from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh, not_read
-from .reading import reading
-from .text_rows import integers, parsed
-from .vtk_cells import KINDS
+from ..meshes.topology import Float
+from .content.raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh, not_read
+from .parsing.reading import reading
+from .parsing.text_rows import integers, parsed
+from .vtk.cells import KINDS
 
 _KEY = re.compile(r"^[ \t]*([A-Z_0-9]+)[ \t]*=[ \t]*(.*)$", re.MULTILINE)
 _NEEDED = ("NDIME", "NELEM", "NPOIN", "NMARK")

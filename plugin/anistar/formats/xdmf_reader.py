@@ -15,11 +15,11 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from .raw import Array, Block, RawMesh
-from .rows import leading_rows
-from .tag_arrays import read_tagged
-from .text_rows import parsed
-from .xml_tree import attribute, only_child, root_of
+from .content.raw import Array, Block, RawMesh
+from .content.tag_arrays import read_tagged
+from .parsing.rows import leading_rows
+from .parsing.text_rows import parsed
+from .parsing.xml_tree import attribute, only_child, root_of
 
 # XDMF's number of a type in a mixture -> (kind, columns before the points, columns in all); a
 # polyline has its number of points behind the type.

@@ -1,14 +1,14 @@
 """Fields from one mesh to another: interpolation, projection, and projection within bounds."""
 
-from .intersection import Supermesh, supermesh
 from .location import locator
-from .measure import integral
-from .nodes import node_positions
 from .operators import transfer_operator
 from .options import METHODS, OUTSIDE, Outside, TransferOptions
+from .projection.intersection import Supermesh, supermesh
 from .quadrature import transfer_quadrature
 from .report import Coverage, FieldChange, TransferReport
 from .transfer import Transferred, transfer
+from .values.measure import integral
+from .values.nodes import node_positions
 
 __all__ = [
     "METHODS",

@@ -8,15 +8,15 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..fields import Field
-from ..mesh import Mesh
-from ..topology import Float, Int
-from .columns import as_columns, from_columns
-from .labels import majority
+from ..meshes.fields import Field
+from ..meshes.mesh import Mesh
+from ..meshes.topology import Float, Int
 from .location import Places, located_nodes, located_points
-from .nodes import node_basis
 from .options import TransferOptions
 from .regions import Regions, common_regions
+from .values.columns import as_columns, from_columns
+from .values.labels import majority
+from .values.nodes import node_basis
 
 
 class Interpolator:

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..mesh import Mesh
-from ..topology import Bool, Float, Int, cell_determinants, vector_lengths
-from .nodes import node_coordinates
+from ..meshes.mesh import Mesh
+from ..meshes.topology import Bool, Float, Int, cell_determinants, vector_lengths
 from .options import TransferOptions
 from .regions import Regions
+from .values.nodes import node_coordinates
 
 # How far, relative to the cell, the nodes of a cell are drawn to its middle to find the source
 # cell on their side of a facet: far above the round-off of a coordinate, far below a cell.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
-from ..mesh import Mesh
-from .coverage import require_covered
+from ..meshes.mesh import Mesh
 from .interpolation import Interpolator
-from .intersection import supermesh
-from .nodes import n_nodes
 from .options import Outside, TransferOptions
-from .projection import Projector
+from .projection.coverage import require_covered
+from .projection.intersection import supermesh
+from .projection.l2_projection import Projector
+from .values.nodes import n_nodes
 
 LOCATIONS = ("points", "cells", "cell_nodes")
 

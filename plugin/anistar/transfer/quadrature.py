@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..mesh import Mesh
+from ..meshes.mesh import Mesh
+from ..meshes.topology import Float, Int, Long
 from ..metric import check_metric, interpolated
-from ..topology import Float, Int, Long
 from .location import Places, located_coordinates
 from .options import Outside, TransferOptions
 from .regions import common_regions, warn_of_unmatched

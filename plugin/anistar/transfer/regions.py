@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh import Mesh
-from ..topology import Float, Int
+from ..meshes.mesh import Mesh
+from ..meshes.topology import Float, Int
 
 _log = logging.getLogger(__name__)
 

@@ -11,22 +11,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 
-from ..fields import Field, as_fields
-from ..mesh import Mesh
-from ..options import require
-from ..topology import Float
-from .bounded import bounded
-from .columns import from_columns
-from .coverage import require_covered
-from .difference import l2_difference
+from ..arguments import require
+from ..meshes.fields import Field, as_fields
+from ..meshes.mesh import Mesh
+from ..meshes.topology import Float
 from .interpolation import Interpolator
-from .labels import majority
-from .loading import Overlapped, overlapped
-from .measure import cell_integrals
 from .options import Outside, TransferOptions
-from .projection import Loaded, Projector
+from .projection.bounded import bounded
+from .projection.coverage import require_covered
+from .projection.difference import l2_difference
+from .projection.l2_projection import Loaded, Projector
+from .projection.loading import Overlapped, overlapped
 from .regions import Regions, common_regions, sums_by_region, warn_of_unmatched
 from .report import FieldChange, TransferReport
+from .values.columns import from_columns
+from .values.labels import majority
+from .values.measure import cell_integrals
 
 
 @dataclass(frozen=True, eq=False)

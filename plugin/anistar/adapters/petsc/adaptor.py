@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...mesh import Mesh
+from ...meshes.mesh import Mesh
 from ...metric import graded
-from ...remesh import remesh
-from ...remesh_options import RemeshOptions
+from ...remeshing.options import RemeshOptions
+from ...remeshing.remesh import remesh
 from .gather import gathered, scattered
 from .labels import PlexLabels
 from .library import (

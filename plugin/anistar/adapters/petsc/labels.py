@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...mesh import Mesh
+from ...meshes.mesh import Mesh
 from .library import PETSc
 from .strata import Strata
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import dolfinx_wheel
+from .. import dolfinx_wheel
 
 dolfinx_wheel.make_importable()
 try:

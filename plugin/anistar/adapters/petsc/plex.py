@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...mesh import Mesh
-from ...topology import cell_determinants
+from ...meshes.mesh import Mesh
+from ...meshes.topology import cell_determinants
 from .labels import Labelling, Pair, PlexLabels, read_labels, tags_of_sets, write_label
 from .library import PETSc
 from .strata import Long, Strata, strata

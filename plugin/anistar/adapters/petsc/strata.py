@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...topology import RowKeys
+from ...meshes.topology import RowKeys
 from .library import cones
 
 Long = NDArray[np.int64]

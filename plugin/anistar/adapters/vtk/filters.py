@@ -8,11 +8,11 @@ from typing import Any
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
-from ...adapt import AdaptOptions, adapt
-from ...fields import Field
-from ...mesh import Mesh
+from ...loops.adapt import AdaptOptions, adapt
+from ...meshes.fields import Field
+from ...meshes.mesh import Mesh
 from ...metric import from_fields
-from ...remesh import remesh
+from ...remeshing.remesh import remesh
 from ...transfer import transfer
 from .grids import from_vtk, to_vtk
 

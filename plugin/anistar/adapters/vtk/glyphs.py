@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
-from ...mesh import Mesh
+from ...meshes.mesh import Mesh
 from ...metric import check_metric
 
 Float = NDArray[np.float64]

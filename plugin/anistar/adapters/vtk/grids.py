@@ -18,14 +18,14 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray,
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 
-from ...fields import Field, as_fields
-from ...formats.assembly import assembled
-from ...formats.export import exported
-from ...formats.raw import RawMesh
-from ...formats.reading import reading
-from ...formats.tag_arrays import NAMES, TAGS, decoded_names, take_tags
-from ...formats.vtk_cells import blocks_of, types_and_rows
-from ...mesh import Mesh
+from ...formats.content.assembly import assembled
+from ...formats.content.export import exported
+from ...formats.content.raw import RawMesh
+from ...formats.content.tag_arrays import NAMES, TAGS, decoded_names, take_tags
+from ...formats.parsing.reading import reading
+from ...formats.vtk.cells import blocks_of, types_and_rows
+from ...meshes.fields import Field, as_fields
+from ...meshes.mesh import Mesh
 
 
 def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) -> Any:

@@ -1,0 +1,64 @@
+"""``anistar adapt``."""
+
+from __future__ import annotations
+
+import argparse
+
+from ...formats import read, write, write_metric
+from ...loops.adapt import Adapted, adapt
+from .. import console
+from ..files import metric_target, replaced_inputs, writable
+from ..options import (
+    adapt_options,
+    add_metric_options,
+    add_outside_option,
+    add_remesh_options,
+    add_transfer_method_option,
+)
+
+SUMMARY = "adapt a mesh to the fields in its file, and carry the fields over"
+EXAMPLE = "anistar adapt in.vtu --field u --target-complexity 10000 -o out.vtu"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("input", help="mesh with fields; in.mesh picks up in.sol")
+    parser.add_argument("-o", "--output", required=True, help="adapted mesh with the fields")
+    parser.add_argument(
+        "--field",
+        action="append",
+        metavar="NAME",
+        help="field that makes the metric; may be repeated; all scalars and vectors by default",
+    )
+    parser.add_argument("--geometry", metavar="FILE", help="mesh whose boundary is the geometry")
+    parser.add_argument("--metric-output", metavar="FILE", help="also write the metric")
+    add_metric_options(parser)
+    add_remesh_options(parser)
+    add_transfer_method_option(parser)
+    add_outside_option(parser, "nearest")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command."""
+    output = writable(arguments.output)
+    metric_output = metric_target(arguments.metric_output, output)
+    options = adapt_options(arguments, metric_fields=arguments.field)
+    mesh, fields = read(arguments.input)
+    geometry = read(arguments.geometry)[0] if arguments.geometry else None
+    done = adapt(mesh, fields, options, geometry=geometry)
+    inputs = (arguments.input, arguments.geometry)
+    replaced = replaced_inputs(inputs, output, metric_output)
+    write(output, done.mesh, done.fields)
+    if metric_output is not None:
+        write_metric(metric_output, done.mesh, done.metric)
+    console.say_replaced(replaced, "the adapted mesh", beside_json=arguments.json)
+    if arguments.json:
+        console.show_json(done.report)
+    else:
+        _show(arguments.input, mesh.n_points, mesh.n_cells, arguments.output, done)
+    return 0
+
+
+def _show(source: str, points: int, cells: int, target: str, done: Adapted) -> None:
+    rows = [[source, points, cells], [target, done.mesh.n_points, done.mesh.n_cells]]
+    console.show_remeshed(f"adapted in {done.report.seconds:.2f} s", rows, done.report.remesh)

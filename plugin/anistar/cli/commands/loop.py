@@ -1,0 +1,150 @@
+"""``anistar loop``."""
+
+from __future__ import annotations
+
+import argparse
+from contextlib import suppress
+from typing import Any
+
+from ...errors import FormatError
+from ...formats import read
+from ...loops.loop import Loop, LoopError, Step, adapt_loop
+from ...loops.loop_options import LoopOptions
+from ...meshes.mesh import Mesh
+from ...remeshing.demand import check_targets
+from ...report import as_builtin
+from ...runs.file_solver import FILE_KINDS, FileSolver
+from ...runs.folder import RunFolder
+from .. import console
+from ..options import (
+    adapt_options,
+    add_metric_options,
+    add_remesh_options,
+    add_transfer_method_option,
+    numbers,
+)
+from ..settling import add_settling_options, settling_options
+
+SUMMARY = "solve and adapt in turn, with a solver that is a command"
+EXAMPLE = (
+    'anistar loop in.mesh --command "solver {mesh} {solution}" --complexities 1000,2000,4000 -o run'
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("input", help="first mesh")
+    parser.add_argument(
+        "--command",
+        dest="solver",
+        required=True,
+        help="reads {mesh}, writes {solution} (.mesh and .sol, or as --format says)",
+    )
+    parser.add_argument("-o", "--output", required=True, help="folder for all files")
+    parser.add_argument(
+        "--complexities", type=numbers, metavar="C,C,...", help="target of each turn"
+    )
+    parser.add_argument(
+        "--target-error",
+        dest="stop_at_error",
+        type=float,
+        metavar="X",
+        help="stop at this L2 error",
+    )
+    parser.add_argument("--max-iterations", type=int, default=20, metavar="N")
+    parser.add_argument("--field", action="append", metavar="NAME", help="field for the metric")
+    parser.add_argument("--format", "--files", choices=tuple(FILE_KINDS), default="mesh")
+    earlier = parser.add_mutually_exclusive_group()
+    earlier.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on after the steps that the folder holds, as after a crash",
+    )
+    earlier.add_argument(
+        "--force", action="store_true", help="replace the run that the folder holds"
+    )
+    add_metric_options(parser, without=("target_error", "max_coarsening"))
+    add_settling_options(parser, is_loop=True)
+    add_remesh_options(parser)
+    add_transfer_method_option(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command."""
+    options = LoopOptions(
+        adapt=adapt_options(arguments, metric_fields=arguments.field),
+        complexities=arguments.complexities,
+        target_error=arguments.stop_at_error,
+        max_iterations=arguments.max_iterations,
+        **settling_options(arguments),
+    )
+    mesh, _ = read(arguments.input)
+    folder = RunFolder(arguments.output, _settings(arguments, options))
+    solve = FileSolver(arguments.solver, folder.folder, arguments.format)
+    # Here as well, so that no earlier run is removed for one that is refused.
+    check_targets(
+        mesh, options.adapt.metric, options.sure_complexities(mesh.dim), options.adapt.remesh
+    )
+    solve.require_command()
+    with folder.locked():
+        finished = folder.load() if arguments.resume else _begun(arguments, folder)
+        solve.count = len(finished)
+        first = finished[0].mesh if finished else mesh
+        loop = _looped(solve, first, options, folder=folder, is_quiet=arguments.json)
+    if arguments.json:
+        console.show_json(loop)
+    else:
+        _show(loop)
+    return 0
+
+
+def _begun(arguments: argparse.Namespace, folder: RunFolder) -> list[Step]:
+    """Make room for a new run, which has no finished step."""
+    removed = folder.begin(force=arguments.force, keep=[arguments.input])
+    console.say_removed(removed, folder.folder, beside_json=arguments.json)
+    return []
+
+
+def _looped(
+    solve: FileSolver, first: Mesh, options: LoopOptions, *, folder: RunFolder, is_quiet: bool
+) -> Loop:
+    """Run the loop after the steps that the folder holds, and save every further one."""
+    finished = list(folder.steps)
+    total = len(options.complexities) + 1 if options.complexities else None
+    with console.progress_bar(total, is_quiet=is_quiet) as advance:
+
+        def moved(step: Step) -> None:
+            folder.save(step)
+            advance(f"{step.mesh.n_points} points")
+
+        try:
+            loop = adapt_loop(solve, first, options, callback=moved, finished=finished)
+        except LoopError as error:
+            with suppress(FormatError):  # the disk that is full, say, is in the first error
+                folder.close(error.loop)
+            raise
+        except KeyboardInterrupt:
+            folder.close(Loop(tuple(folder.steps), "interrupted"))
+            raise
+    folder.close(loop)
+    return loop
+
+
+def _settings(arguments: argparse.Namespace, options: LoopOptions) -> dict[str, Any]:
+    """Return what every step depends on; the targets still to come may change on the way."""
+    adapt = as_builtin(options.adapt)
+    return {
+        "command": arguments.solver,
+        "format": arguments.format,
+        "options": adapt,
+        "max_coarsening": options.max_coarsening,
+    }
+
+
+def _show(loop: Loop) -> None:
+    rows = [
+        [step.iteration, step.complexity, step.mesh.n_points, max(step.error.values())]
+        for step in loop.steps
+    ]
+    columns = ["iteration", "complexity", "points", "estimated L2 error"]
+    console.show_table(loop.stop_reason, columns, rows)

@@ -1,0 +1,83 @@
+"""``anistar remesh``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ...errors import FormatError
+from ...formats import METRIC, read, read_metric, write, write_metric
+from ...formats.suffixes import SOLUTION_OF, solution_beside, suffix_of
+from ...meshes.fields import Field
+from ...remeshing.remesh import remesh
+from ...remeshing.report import RemeshReport
+from ...transfer import transfer
+from .. import console
+from ..files import metric_target, replaced_inputs, writable
+from ..options import adapt_options, add_remesh_options
+
+SUMMARY = "remesh to a given metric, and carry the fields over"
+EXAMPLE = "anistar remesh in.mesh --metric metric.sol -o out.mesh"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("input", help="mesh, with fields or without")
+    parser.add_argument("-o", "--output", required=True, help="new mesh")
+    parser.add_argument(
+        "--metric",
+        metavar="FILE",
+        help="tensors, or sizes, at the points; for in.mesh the default is in.sol",
+    )
+    parser.add_argument(
+        "--metric-output",
+        metavar="FILE",
+        help="metric at the new points; for out.mesh without fields it goes to out.sol anyway",
+    )
+    parser.add_argument("--geometry", metavar="FILE", help="mesh whose boundary is the geometry")
+    add_remesh_options(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command."""
+    output = writable(arguments.output)
+    metric_output = metric_target(arguments.metric_output, output)
+    options = adapt_options(arguments)
+    beside = solution_beside(Path(arguments.input))
+    source = Path(arguments.metric) if arguments.metric else beside
+    if source is None:
+        raise FormatError(f"no metric: give --metric, there is no .sol beside {arguments.input}")
+    mesh, fields = read(arguments.input)
+    M = read_metric(source, mesh)
+    geometry = read(arguments.geometry)[0] if arguments.geometry else None
+    done = remesh(mesh, M, options.remesh, geometry=geometry)
+    # The solution beside a medit mesh is the metric itself, not a field to carry.
+    carried = {} if source == beside else fields
+    fields = transfer(mesh, carried, done.mesh, options.transfer).fields
+    if metric_output is None and not fields and suffix_of(output) in SOLUTION_OF:
+        fields = {METRIC: Field(done.metric)}
+    inputs = (arguments.input, str(source), arguments.geometry)
+    replaced = replaced_inputs(inputs, output, metric_output)
+    write(output, done.mesh, fields)
+    if metric_output is not None:
+        write_metric(metric_output, done.mesh, done.metric)
+    console.say_replaced(replaced, "the new mesh", beside_json=arguments.json)
+    if arguments.json:
+        console.show_json(done.report)
+    else:
+        rows = [
+            [arguments.input, mesh.n_points, mesh.n_cells],
+            [arguments.output, done.mesh.n_points, done.mesh.n_cells],
+        ]
+        console.show_remeshed("remeshed", rows, done.report)
+        console.say(_certified(done.report))
+    return 0
+
+
+def _certified(report: RemeshReport) -> str:
+    if report.star_ok is None or report.simplex_ok is None:
+        return f"agreement {report.agreement}: the stars were not checked"
+    return (
+        f"{100 * report.star_ok:.2f} % of the stars and {100 * report.simplex_ok:.2f} % of the "
+        f"simplices are certified; agreement {report.agreement}"
+    )

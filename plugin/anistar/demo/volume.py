@@ -1,0 +1,120 @@
+"""The demo in 3D: adapt to a spherical front in a cube, and compare with uniform meshes."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..judging.interpolation_error import l2_error
+from ..loops.loop import Step, adapt_loop
+from ..loops.loop_options import LoopOptions
+from ..meshes.mesh import Mesh
+from ..remeshing.remesh import remesh
+from ..report import write_json
+from ..runs.series import write_series
+from .result import REPORT, Demo, DemoRow, order_of
+
+Floats = NDArray[np.float64]
+Progress = Callable[[str], object]
+
+COMPLEXITIES = (500.0, 1000.0, 2000.0, 4000.0)
+REPEATS = 2
+
+# The front: a sphere of this radius around the origin, this steep.
+RADIUS, STEEPNESS = 0.7, 30.0
+BOXES = 8
+
+
+def front(points: Floats) -> Floats:
+    """Return the function of the demo at (n, 3) points."""
+    return np.asarray(np.tanh(STEEPNESS * (np.linalg.norm(points, axis=1) - RADIUS)))
+
+
+def unit_cube(n: int = BOXES) -> Mesh:
+    """Return the unit cube of ``n**3`` boxes, six tetrahedra each."""
+    axis = np.linspace(0.0, 1.0, n + 1)
+    grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)
+    at = np.arange((n + 1) ** 3).reshape((n + 1,) * 3)
+    cells = []
+    for path in ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)):
+        step = np.zeros((4, 3), dtype=int)
+        for row, direction in enumerate(path, start=1):
+            step[row:, direction] = 1
+        corners = [at[i : n + i, j : n + j, k : n + k].ravel() for i, j, k in step]
+        is_odd = path in ((0, 2, 1), (2, 1, 0), (1, 0, 2))
+        order = (0, 1, 3, 2) if is_odd else (0, 1, 2, 3)
+        cells.append(np.stack([corners[v] for v in order], axis=1))
+    return Mesh(points=grid.reshape(-1, 3), cells=np.concatenate(cells))
+
+
+def stages(complexities: Sequence[float] = COMPLEXITIES) -> int:
+    """Return how often the demo calls `progress`."""
+    return 1 + REPEATS * len(complexities) + len(complexities) + 1
+
+
+def run_volume_demo(
+    folder: str | os.PathLike[str],
+    *,
+    complexities: Sequence[float] = COMPLEXITIES,
+    progress: Progress = lambda stage: None,
+) -> Demo:
+    """Run the demo and leave meshes, fields and the report in a folder.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it is not there.
+    complexities : sequence of float
+        Growing target complexities, at least two.
+    progress : callable
+        ``progress(what)`` is called after each stage.
+    """
+    started = time.perf_counter()
+    place = Path(folder)
+    place.mkdir(parents=True, exist_ok=True)
+    coarse = unit_cube()
+    targets = tuple(c for c in complexities for _ in range(REPEATS))
+    loop = adapt_loop(
+        lambda mesh, fields: {"u": front(mesh.points)},
+        coarse,
+        LoopOptions(complexities=targets, max_iterations=len(targets)),
+        callback=lambda step: progress(f"adapted to {step.complexity or 0:g}") and None,
+    )
+    steps = loop.steps[REPEATS::REPEATS]
+    rows = []
+    for step in steps:
+        rows.append(_row(step, coarse))
+        progress(f"uniform at {step.complexity:g}")
+    files = write_series(
+        place / "front.pvd", ((step.mesh, step.fields) for step in (loop.steps[0], *steps))
+    )
+    progress("files")
+    demo = Demo(
+        rows=tuple(rows),
+        adapted_order=order_of(rows, "adapted", dim=3),
+        uniform_order=order_of(rows, "uniform", dim=3),
+        reference_points=None,
+        loop=loop,
+        files=(*files, place / REPORT),
+        seconds=time.perf_counter() - started,
+    )
+    write_json(place / REPORT, demo)
+    return demo
+
+
+def _row(step: Step, coarse: Mesh) -> DemoRow:
+    complexity = float(step.complexity or 0.0)
+    M = np.tile(complexity ** (2.0 / 3.0) * np.eye(3), (coarse.n_points, 1, 1))
+    uniform = remesh(coarse, M).mesh
+    return DemoRow(
+        complexity=complexity,
+        adapted_points=step.mesh.n_points,
+        adapted_error=l2_error(step.mesh, front(step.mesh.points), front),
+        uniform_points=uniform.n_points,
+        uniform_error=l2_error(uniform, front(uniform.points), front),
+    )

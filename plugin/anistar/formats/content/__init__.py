@@ -1,0 +1,1 @@
+"""What a file says, and the ways from there to a mesh and back."""

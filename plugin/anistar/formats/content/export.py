@@ -1,0 +1,60 @@
+"""From a mesh to what general formats carry: 3D points, blocks of all dimensions, flat arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ...meshes.fields import Field
+from ...meshes.mesh import Mesh
+from .raw import KIND_OF_DIM, Array, Block, RawMesh
+
+
+def exported(mesh: Mesh, fields: Mapping[str, Field]) -> RawMesh:
+    """Return the mesh with z = 0 where needed, cells first, then facets, ridges and corners.
+
+    Vectors get three components and tensors nine. Cell fields have no value on the facets: NaN,
+    and 0 for labels.
+    """
+    corners = mesh.corners[:, None]
+    groups = [(mesh.dim, mesh.cells, mesh.cell_tags), (mesh.dim - 1, mesh.facets, mesh.facet_tags)]
+    if mesh.dim == 3:
+        groups.append((1, mesh.edges, mesh.edge_tags))
+    groups.append((0, corners, np.zeros(len(corners), np.int32)))
+    on_cells = {name: padded(field) for name, field in fields.items() if field.on == "cells"}
+    blocks = []
+    for dim, rows, tags in groups:
+        if len(rows) or dim == mesh.dim:
+            data = {
+                name: values if dim == mesh.dim else _no_value(values, len(rows))
+                for name, values in on_cells.items()
+            }
+            blocks.append(Block(KIND_OF_DIM[dim], rows, tags, data))
+    return RawMesh(
+        points=_in_space(mesh.points),
+        blocks=blocks,
+        names=dict(mesh.names),
+        point_data={name: padded(field) for name, field in fields.items() if field.on == "points"},
+    )
+
+
+def padded(field: Field) -> Array:
+    """Return (n,), (n, 3) or (n, 9) values: the third direction is filled with zeros."""
+    values = field.values
+    if values.ndim == 1:
+        return values
+    return _in_space(values).reshape(len(values), -1)
+
+
+def _in_space(values: Array) -> Array:
+    """Return vectors or tensors with three directions; the same array if it has them."""
+    missing = 3 - values.shape[1]
+    if missing == 0:
+        return values
+    return np.pad(values, [(0, 0)] + [(0, missing)] * (values.ndim - 1))
+
+
+def _no_value(values: Array, count: int) -> Array:
+    fill = 0 if values.dtype.kind in "iu" else np.nan
+    return np.full((count, *values.shape[1:]), fill, dtype=values.dtype)

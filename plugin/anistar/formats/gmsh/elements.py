@@ -1,0 +1,107 @@
+"""Elements as Gmsh lists them, and the blocks and tags that are made of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..content.raw import Array, Block
+from ..parsing.numbering import Numbering
+
+# Gmsh's element type -> kind and number of nodes.
+KINDS = {
+    1: ("line", 2),
+    2: ("triangle", 3),
+    3: ("quad", 4),
+    4: ("tetra", 4),
+    5: ("hexahedron", 8),
+    6: ("wedge", 6),
+    7: ("pyramid", 5),
+    8: ("line3", 3),
+    9: ("triangle6", 6),
+    11: ("tetra10", 10),
+    15: ("vertex", 1),
+}
+
+
+@dataclass
+class Elements:
+    """Elements of one kind.
+
+    Attributes
+    ----------
+    kind : str
+    numbers : (k,) int array
+        The number that the file gives to each.
+    nodes : (k, n) int array
+        Numbers of nodes.
+    physical, entity : (k,) int arrays
+        The physical group, 0 for none, and the geometric entity.
+    """
+
+    kind: str
+    numbers: Array
+    nodes: Array
+    physical: Array
+    entity: Array
+
+
+def kind_and_width(number: int) -> tuple[str, int]:
+    """Return kind and number of nodes of a type; raise ValueError if it is not known."""
+    if number not in KINDS:
+        raise ValueError(f"Elements: type {number} is not known")
+    return KINDS[number]
+
+
+def joined(runs: list[Elements]) -> list[Elements]:
+    """Return the elements of each kind together, in their order."""
+    kinds: dict[str, list[Elements]] = {}
+    for run in runs:
+        kinds.setdefault(run.kind, []).append(run)
+    return [
+        Elements(
+            kind,
+            *(
+                np.concatenate([getattr(run, name) for run in members])
+                for name in ("numbers", "nodes", "physical", "entity")
+            ),
+        )
+        for kind, members in kinds.items()
+    ]
+
+
+def blocks_of(runs: list[Elements], nodes: Numbering, *, ours: bool) -> list[Block]:
+    """Return a block for each kind.
+
+    Without physical groups the numbers of the geometric entities are the only tags; in a file
+    that we wrote they mean nothing.
+    """
+    _check_numbers(runs)
+    named = ours or any(run.physical.any() for run in runs)
+    return [
+        Block(run.kind, nodes.rows(run.nodes), run.physical if named else run.entity)
+        for run in runs
+    ]
+
+
+def _check_numbers(runs: list[Elements]) -> None:
+    """Raise if one number stands for two elements.
+
+    An element that is in several physical groups may be listed once for each.
+    """
+    if not runs:
+        return
+    numbers = np.concatenate([run.numbers for run in runs])
+    order = np.argsort(numbers, kind="stable")
+    same = np.flatnonzero(numbers[order][1:] == numbers[order][:-1])
+    if len(same) == 0:
+        return
+    width = max(run.nodes.shape[1] for run in runs)
+    nodes = np.concatenate(
+        [np.pad(run.nodes, ((0, 0), (0, width - run.nodes.shape[1]))) for run in runs]
+    )
+    differs = (nodes[order[same]] != nodes[order[same + 1]]).any(axis=1)
+    if differs.any():
+        number = numbers[order[same[differs][0]]]
+        raise ValueError(f"the element number {number} is given twice: only one can be meant")

@@ -1,0 +1,1 @@
+"""Medit meshes and solutions, and the GMF container in which they lie."""

@@ -1,0 +1,53 @@
+"""SU2's native mesh, written here because meshio's writer fails; regions have no place in it.
+
+References
+----------
+SU2 documentation, "Mesh File": elements by their VTK type, one marker for each boundary.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..atomic import replaced
+from ..errors import FormatError
+from ..meshes.fields import Field
+from ..meshes.mesh import Mesh
+from .parsing.text_rows import printed
+
+_VTK_TYPE = {1: 3, 2: 5, 3: 10}
+
+
+def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
+    """Write cells, points and one marker for each facet tag, by its name or number.
+
+    Raises
+    ------
+    FormatError
+        If there are fields, or a name has spaces, which the format cannot hold.
+    """
+    if fields:
+        raise FormatError(f"cannot write {path}: SU2 meshes hold no fields")
+    parts = [f"NDIME= {mesh.dim}\nNELEM= {mesh.n_cells}\n", _rows(mesh.dim, mesh.cells)]
+    parts += [f"NPOIN= {mesh.n_points}\n", printed(mesh.points, np.arange(mesh.n_points))]
+    tags = np.unique(mesh.facet_tags)
+    parts.append(f"NMARK= {len(tags)}\n")
+    for tag in map(int, tags):
+        name = mesh.names.get((mesh.dim - 1, tag), str(tag))
+        if name.split() != [name]:
+            raise FormatError(f"cannot write {path}: a marker of SU2 has no spaces, {name!r} has")
+        members = mesh.facets[mesh.facet_tags == tag]
+        parts.append(f"MARKER_TAG= {name}\nMARKER_ELEMS= {len(members)}\n")
+        parts.append(_rows(mesh.dim - 1, members))
+    with replaced(path) as temporary:
+        temporary.write_text("".join(parts), encoding="utf-8")
+
+
+def _rows(dim: int, rows: NDArray[np.int32]) -> str:
+    """Return one line for each element: its type, its points, its number."""
+    kinds = np.full(len(rows), _VTK_TYPE[dim])
+    return printed(kinds, rows, np.arange(len(rows)))

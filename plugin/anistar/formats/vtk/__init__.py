@@ -1,0 +1,1 @@
+"""VTK's formats: legacy `.vtk` and VTU."""

@@ -1,0 +1,61 @@
+"""Figures of every cell, to look at in a viewer."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..meshes.fields import Field
+from ..meshes.mesh import Mesh
+from ..metric import check_metric
+from ..metric.algebra import congruent, eigenvalues, lower_factor
+from .certificate import Certificate
+from .quality import mean_ratios, metric_lengths
+
+Float = NDArray[np.float64]
+
+
+def cell_arrays(mesh: Mesh, M: Float, certificate: Certificate | None = None) -> dict[str, Field]:
+    """Return figures of every cell as fields on the cells.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    M : (n, d, d) float64
+        Metric at the points, in 1 / length**2.
+    certificate : Certificate, optional
+        That of the mesh for this metric.
+
+    Returns
+    -------
+    dict of str to Field
+        ``longest_edge``, the length in the metric; ``quality``, the mean ratio; ``distortion``,
+        the largest between two vertices of the cell, at least 1; and with a certificate
+        ``inconsistent``, 0 where the cell is certified and 1 where it is not.
+
+    Raises
+    ------
+    MetricError
+        If a tensor is not symmetric positive definite; the point is named.
+    """
+    M = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
+    pairs = list(itertools.combinations(range(mesh.dim + 1), 2))
+    edges = mesh.cells[:, pairs].reshape(-1, 2)
+    shape = (mesh.n_cells, len(pairs))
+    arrays = {
+        "longest_edge": metric_lengths(mesh, M, edges).reshape(shape).max(axis=1),
+        "quality": mean_ratios(mesh, M),
+        "distortion": _distortions(M[edges[:, 0]], M[edges[:, 1]]).reshape(shape).max(axis=1),
+    }
+    fields = {name: Field(values, "cells") for name, values in arrays.items()}
+    if certificate is not None:
+        flags = (~certificate.simplex_ok).astype(np.int32)
+        fields["inconsistent"] = Field(flags, "cells", "label")
+    return fields
+
+
+def _distortions(M: Float, N: Float) -> Float:
+    ratio = eigenvalues(congruent(lower_factor(M), N))
+    return np.asarray(np.sqrt(np.maximum(ratio[:, -1], 1 / ratio[:, 0])))

@@ -1,0 +1,274 @@
+"""The certificate: which simplices and stars of a mesh are anisotropic Delaunay."""
+
+from __future__ import annotations
+
+import math
+import operator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..core_errors import meshing_errors
+from ..meshes.mesh import Mesh
+from ..metric import check_metric
+from ..metric.algebra import solved
+from ..report import as_builtin, attributes
+
+Float = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+
+Count = tuple[int, int]
+"""How many, of how many."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Certificate:
+    """What is Delaunay in a mesh, each simplex tested in the metrics of its vertices.
+
+    A simplex is *Delaunay in a metric* when no vertex that it can reach lies strictly inside its
+    circumscribed ellipsoid in that metric. It reaches the vertices of the cells that the open
+    ellipsoid meets, walking from cell to cell and never across a boundary or constrained facet.
+
+    Attributes
+    ----------
+    simplex_ok : (m,) bool
+        Simplices that are Delaunay in the metrics of all their vertices: certified.
+    star_ok : (n,) bool
+        Vertices all of whose simplices are Delaunay in the metric of the vertex: certified.
+    distortion : (n,) float64
+        Largest distortion between the metric of a vertex and that of a neighbour, at least 1.
+    radius_edge : (m,) float64
+        Circumradius over shortest edge, the largest value that a metric of its vertices gives.
+    sliverity : (m,) float64
+        ``(volume / e**d)**(1 / d)`` with the shortest edge e, the smallest value that a metric of
+        its vertices gives: 0 for a sliver, 0.49 for a regular tetrahedron, 0.66 for a triangle.
+    exempt : (n,) bool
+        Vertices that fail and may: in the first shell of a corner below 30 degrees, at most 8
+        for each corner. In 2D a corner is a vertex between two walls; in 3D an edge between two
+        walls with that dihedral angle, or a vertex at which the walls leave less than the solid
+        angle of a cone with that aperture.
+    verdict : str
+        One line with `simplex_ok` and `star_ok` by name, and the number of exempt vertices.
+    delaunay : (m, d + 1) bool
+        Whether a simplex is Delaunay in the metric of each of its vertices.
+    stars_without_interfaces : (int, int)
+        Stars certified when the walk crosses interfaces too (not the boundary), of all.
+    restricted_v1, restricted_v2 : (int, int)
+        Simplices that are in the paper's restricted stars of all their vertices, of those whose
+        circumcentre lies in the domain: in the metrics of all vertices (`v1`: [2], section 3),
+        or of one at least (`v2`: [1], section 3).
+
+    References
+    ----------
+    .. [1] Boissonnat, Wormser, Yvinec, Anisotropic Delaunay Mesh Generation, INRIA research
+       report 7712, second version, sections 2 and 3.
+    .. [2] The same report, first version, section 3.
+    """
+
+    simplex_ok: Bool
+    star_ok: Bool
+    distortion: Float
+    radius_edge: Float
+    sliverity: Float
+    exempt: Bool
+    verdict: str
+    delaunay: Bool
+    stars_without_interfaces: Count
+    restricted_v1: Count
+    restricted_v2: Count
+
+    @property
+    def is_certified(self) -> bool:
+        """Whether every star is certified or exempt."""
+        return bool((self.star_ok | self.exempt).all())
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins: the fractions, counts and extremes, without the arrays.
+
+        ``simplex_ok`` and ``star_ok`` are fractions, ``n_exempt`` counts vertices,
+        ``distortion_max``, ``radius_edge_max`` and ``sliverity_min`` are extremes; the pairs are
+        ``[how many, of how many]``.
+        """
+        return {
+            "verdict": self.verdict,
+            "is_certified": self.is_certified,
+            "simplex_ok": float(self.simplex_ok.mean()),
+            "star_ok": float(self.star_ok.mean()),
+            "simplices": [int(self.simplex_ok.sum()), len(self.simplex_ok)],
+            "stars": [int(self.star_ok.sum()), len(self.star_ok)],
+            "n_exempt": int(self.exempt.sum()),
+            "distortion_max": as_builtin(self.distortion.max()),
+            "radius_edge_max": as_builtin(self.radius_edge.max()),
+            "sliverity_min": as_builtin(self.sliverity.min()),
+            "stars_without_interfaces": list(self.stars_without_interfaces),
+            "restricted_v1": list(self.restricted_v1),
+            "restricted_v2": list(self.restricted_v2),
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimplexOfStar:
+    """One simplex of the star of a vertex v, seen in the metric of v.
+
+    Attributes
+    ----------
+    cell : int
+        Its index in ``mesh.cells``.
+    vertices : tuple of int
+        Its points.
+    is_delaunay : bool
+        Whether it reaches no vertex strictly inside its circumscribed ellipsoid.
+    violator : int or None
+        A vertex inside, where there is one.
+    centre : tuple of float
+        Circumcentre in the metric of v, rounded.
+    radius : float
+        Circumradius in the metric of v, rounded.
+    violator_distance : float or None
+        Distance of the violator from the centre in the metric of v, rounded.
+    """
+
+    cell: int
+    vertices: tuple[int, ...]
+    is_delaunay: bool
+    violator: int | None
+    centre: tuple[float, ...]
+    radius: float
+    violator_distance: float | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins; the keys are those of the attributes."""
+        return attributes(self)
+
+
+def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
+    """Test every simplex and every star of a mesh, in exact arithmetic.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Its facets are the walls of the constrained definition.
+    M : (n, d, d) array
+        Metric at the points, in 1 / length**2.
+    threads : int
+        Threads to use; the certificate does not depend on it.
+
+    Returns
+    -------
+    Certificate
+
+    Raises
+    ------
+    MetricError
+        If a tensor is not symmetric positive definite; the point is named.
+    ValueError
+        If `threads` is below 1.
+
+    Examples
+    --------
+    >>> import numpy as np, anistar
+    >>> mesh = anistar.Mesh(points=[[0, 0], [1, 0], [1, 1], [0, 1]], cells=[[0, 1, 2], [0, 2, 3]])
+    >>> anistar.certify(mesh, np.tile([[1.0, 0.5], [0.5, 1.0]], (4, 1, 1))).simplex_ok
+    array([False, False])
+    """
+    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
+    threads = operator.index(threads)
+    if threads < 1:
+        raise ValueError(f"threads must be at least 1, got {threads}")
+    compiled = _core.certify2 if mesh.dim == 2 else _core.certify3
+    with meshing_errors():
+        raw = compiled(mesh.points, mesh.cells, metric, mesh.facets, threads)
+    bits = raw["delaunay"][:, None] >> np.arange(mesh.dim + 1, dtype=np.uint8)
+    flags = {name: raw[name].astype(bool) for name in ("simplex_ok", "star_ok", "exempt")}
+    return Certificate(
+        **flags,
+        distortion=raw["distortion"],
+        radius_edge=raw["radius_edge"],
+        sliverity=raw["sliverity"],
+        verdict=_verdict(**flags),
+        delaunay=(bits & 1).astype(bool),
+        stars_without_interfaces=(int(raw["stars_without_interfaces"]), mesh.n_points),
+        restricted_v1=raw["restricted_v1"],
+        restricted_v2=raw["restricted_v2"],
+    )
+
+
+def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, ...]:
+    """Return, for each simplex of one star, what decides whether the star is certified.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    M : (n, d, d) array
+        Metric at the points, in 1 / length**2.
+    vertex : int
+        The point whose star is explained.
+
+    Returns
+    -------
+    tuple of SimplexOfStar
+        In the order of ``mesh.cells``. The star is certified when all are Delaunay.
+
+    Raises
+    ------
+    MetricError
+        If a tensor is not symmetric positive definite; the point is named.
+    ValueError
+        If the mesh has no such vertex.
+    """
+    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
+    vertex = operator.index(vertex)
+    if not 0 <= vertex < mesh.n_points:
+        raise ValueError(f"vertex must be in [0, {mesh.n_points - 1}], got {vertex}")
+    cells = np.flatnonzero((mesh.cells == vertex).any(axis=1))
+    return tuple(_explained(mesh, metric[vertex], int(cell)) for cell in cells)
+
+
+def _verdict(simplex_ok: Bool, star_ok: Bool, exempt: Bool) -> str:
+    if star_ok.all():
+        judgement = "certified"
+    elif (star_ok | exempt).all():
+        judgement = "certified but for exempt vertices"
+    else:
+        judgement = "not certified"
+    return (
+        f"{judgement}: star_ok = {_fraction(star_ok)}, simplex_ok = {_fraction(simplex_ok)}, "
+        f"{int(exempt.sum())} vertices exempt at sharp corners"
+    )
+
+
+def _fraction(ok: Bool) -> str:
+    # rounded down: 1 means all
+    return f"{math.floor(1e4 * ok.mean()) / 1e4:g} ({int(ok.sum())} of {len(ok)})"
+
+
+def _explained(mesh: Mesh, metric: Float, cell: int) -> SimplexOfStar:
+    compiled = _core.delaunay_violator2 if mesh.dim == 2 else _core.delaunay_violator3
+    with meshing_errors():
+        found = compiled(mesh.points, mesh.cells, mesh.facets, cell, metric)
+    corners = mesh.points[mesh.cells[cell]]
+    centre = circumcentre(corners, metric)
+    return SimplexOfStar(
+        cell=cell,
+        vertices=tuple(mesh.cells[cell].tolist()),
+        is_delaunay=found < 0,
+        violator=None if found < 0 else int(found),
+        centre=tuple(centre.tolist()),
+        radius=_length(corners[0] - centre, metric),
+        violator_distance=None if found < 0 else _length(mesh.points[found] - centre, metric),
+    )
+
+
+def circumcentre(simplex: Float, metric: Float) -> Float:
+    """Return the (d,) centre of the circumscribed ellipsoid of a (d + 1, d) simplex in a metric."""
+    legs = simplex[1:] - simplex[0]
+    gram = np.einsum("ki,ij,lj->kl", legs, metric, legs)
+    weights = solved(gram[None], np.diagonal(gram)[None] / 2)[0]
+    return np.asarray(simplex[0] + np.einsum("k,ki->i", weights, legs))
+
+
+def _length(vector: Float, metric: Float) -> float:
+    return math.sqrt(np.einsum("i,ij,j->", vector, metric, vector))

@@ -1,0 +1,346 @@
+"""One adaptation: metric from fields, new mesh, fields on the new mesh."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arguments import require
+from ..errors import MeshingError
+from ..meshes.fields import Field, as_fields
+from ..meshes.mesh import Mesh
+from ..metric import Ledger, MetricOptions, from_fields
+from ..remeshing.demand import check_targets
+from ..remeshing.options import RemeshOptions
+from ..remeshing.project import Project
+from ..remeshing.remesh import Remeshed, remesh
+from ..report import attributes
+from ..telling import telling_once
+from ..transfer import TransferOptions, TransferReport, transfer
+from .aliases import canonical
+
+Floats = NDArray[np.float64]
+
+STAGES = ("metric", "remesh", "transfer")
+
+#: Relative tolerance of `target_elements`, and what `max_elements` is undercut by, when the mesh
+#: is made again.
+ELEMENTS_TOLERANCE = 0.03
+CAP_MARGIN = 0.99
+
+#: How often at most.
+MAX_CORRECTIONS = 3
+
+
+def _transfer_to_a_remesh() -> TransferOptions:
+    # New points of a curved boundary lie on the smooth curve, so slightly off the old chords.
+    return TransferOptions(outside="nearest")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AdaptOptions:
+    """The options of every stage of an adaptation.
+
+    Parameters
+    ----------
+    metric : MetricOptions
+        From fields to a metric.
+    remesh : RemeshOptions
+        From a metric to a mesh.
+    transfer : TransferOptions
+        From the old mesh to the new one; by default points outside take the nearest value.
+    metric_fields : sequence of str, optional
+        Names of the fields that make the metric; None means every scalar and vector field at
+        the points.
+    max_refinement : float, optional
+        That of `remesh`, in its place: the factor by which sizes shrink in one adaptation at
+        most, for a first mesh that is much too coarse.
+
+    Raises
+    ------
+    TypeError
+        If a stage has options of another class, or `metric_fields` is a string or holds
+        something else than strings.
+    ValueError
+        If `metric_fields` is empty.
+    """
+
+    metric: MetricOptions = field(default_factory=MetricOptions)
+    remesh: RemeshOptions = field(default_factory=RemeshOptions)
+    transfer: TransferOptions = field(default_factory=_transfer_to_a_remesh)
+    metric_fields: Sequence[str] | None = None
+    max_refinement: float | None = None
+
+    def __post_init__(self) -> None:
+        require(MetricOptions, metric=self.metric)
+        require(RemeshOptions, remesh=self.remesh)
+        if self.max_refinement is not None:
+            limited = replace(self.remesh, max_refinement=self.max_refinement)
+            object.__setattr__(self, "remesh", limited)
+        require(TransferOptions, transfer=self.transfer)
+        names = self.metric_fields
+        if names is None:
+            return
+        if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+            raise TypeError(f"metric_fields must be a sequence of names, not {names!r}")
+        if not len(names):
+            raise ValueError("metric_fields is empty: give at least one name, or None for all")
+        object.__setattr__(self, "metric_fields", tuple(names))
+
+    @classmethod
+    def from_dict(cls, options: Mapping[str, Any]) -> AdaptOptions:
+        """Return options from plain names: ours, PETSc's or Mmg's.
+
+        Parameters
+        ----------
+        options : mapping
+            Options of any stage by name, for instance ``{"target_complexity": 1e4}``,
+            ``{"dm_plex_metric": {"h_min": 1e-3}}`` or ``{"hmin": 1e-3}``; the stages ``metric``,
+            ``remesh`` and ``transfer`` may also be given as mappings. A plain ``method`` is that
+            of the metric.
+
+        Raises
+        ------
+        ValueError
+            If a name is unknown or given twice.
+        """
+        defaults = cls()
+        known = {
+            stage: [item.name for item in fields(getattr(defaults, stage))] for stage in STAGES
+        }
+        chosen = canonical(options, {**known, "adapt": ["metric_fields"]})
+        made = {stage: replace(getattr(defaults, stage), **chosen[stage]) for stage in STAGES}
+        return cls(**made, **chosen["adapt"])
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptReport:
+    """What an adaptation did.
+
+    Attributes
+    ----------
+    metric_fields : tuple of str
+        The fields that made the metric.
+    metric : Ledger
+        Complexity after every stage of the metric.
+    remesh : RemeshReport
+        What the mesher did.
+    transfer : TransferReport
+        What the transfer did.
+    corrections : int
+        How often the mesh was made again because it missed `target_elements` by more than 3 %
+        or exceeded `max_elements`.
+    seconds : float
+        Wall time of the whole adaptation.
+    """
+
+    metric_fields: tuple[str, ...]
+    metric: Any
+    remesh: Any
+    transfer: TransferReport
+    corrections: int
+    seconds: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins only; the keys are those of the attributes."""
+        return attributes(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Adapted:
+    """The new mesh, the fields and the metric on it, and the report."""
+
+    mesh: Mesh
+    fields: dict[str, Any]
+    metric: Floats
+    report: AdaptReport
+
+
+def adapt(
+    mesh: Mesh,
+    fields: Mapping[str, Field | ArrayLike],
+    options: AdaptOptions | None = None,
+    *,
+    geometry: Mesh | None = None,
+    project: Project | None = None,
+) -> Adapted:
+    """Adapt a mesh to its fields and carry the fields over.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh that carries the fields.
+    fields : mapping of str to Field or array
+        The fields; a bare array means points.
+    options : AdaptOptions, optional
+        Options of every stage.
+    geometry : Mesh, optional
+        The mesh whose boundary is the geometry; `mesh` by default.
+    project : callable, optional
+        ``project(points, facet_tag)`` moves (k, d) boundary points onto the true boundary.
+
+    Returns
+    -------
+    Adapted
+        Fields come back in the form they were given (bare array or `Field`).
+
+    Raises
+    ------
+    ValueError
+        If a field does not fit the mesh, is unknown, or holds NaN where the metric needs it.
+    MeshingError
+        If the mesher cannot finish, or cannot keep to `max_elements`.
+    """
+    options = options if options is not None else AdaptOptions()
+    require(AdaptOptions, options=options)
+    return adapt_to(mesh, fields, options, geometry=geometry, project=project)
+
+
+class Wanted(NamedTuple):
+    """A metric from fields, and how it was made."""
+
+    metric: Floats
+    ledger: Ledger
+
+
+def metric_for(
+    mesh: Mesh, fields: Mapping[str, Field | ArrayLike], options: AdaptOptions
+) -> Wanted:
+    """Return the metric that `adapt` makes of the fields."""
+    checked = as_fields(mesh, fields)
+    names = metric_field_names(checked, options.metric_fields)
+    return Wanted(*from_fields(mesh, {name: checked[name] for name in names}, options.metric))
+
+
+@telling_once()
+def adapt_to(
+    mesh: Mesh,
+    fields: Mapping[str, Field | ArrayLike],
+    options: AdaptOptions,
+    *,
+    wanted: Wanted | None = None,
+    geometry: Mesh | None = None,
+    project: Project | None = None,
+) -> Adapted:
+    """Adapt as `adapt` does; `wanted` is what `metric_for` returned, if it is known already."""
+    started = time.perf_counter()
+    checked = as_fields(mesh, fields)
+    names = metric_field_names(checked, options.metric_fields)
+    if options.metric.has_count:
+        target = options.metric.complexity_for(mesh.dim)
+        check_targets(mesh, options.metric, [target], options.remesh)
+    chosen = {name: checked[name] for name in names}
+    ledger, done, corrections = _to_count(mesh, chosen, options, wanted, geometry, project)
+    carried = transfer(mesh, fields, done.mesh, options.transfer)
+    report = AdaptReport(
+        metric_fields=names,
+        metric=ledger,
+        remesh=done.report,
+        transfer=carried.report,
+        corrections=corrections,
+        seconds=time.perf_counter() - started,
+    )
+    return Adapted(done.mesh, carried.fields, done.metric, report)
+
+
+def _to_count(
+    mesh: Mesh,
+    fields: Mapping[str, Field],
+    options: AdaptOptions,
+    first: Wanted | None,
+    geometry: Mesh | None,
+    project: Project | None,
+) -> tuple[Ledger, Remeshed, int]:
+    """Make the mesh, again where its number of elements is off, and count how often.
+
+    The number jumps on small meshes, so that the last mesh need not be the best.
+    """
+    wanted, best = options.metric, None
+    for corrections in range(MAX_CORRECTIONS + 1):
+        M, ledger = first if first is not None else from_fields(mesh, fields, wanted)
+        done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
+        miss = _miss(options.metric, done.mesh.n_cells)
+        if best is None or miss < best[0]:
+            best = miss, ledger, done
+        corrected = _corrected(options.metric, wanted, ledger, done.mesh.n_cells)
+        is_over, _ = miss
+        # a budget that stopped it will stop the next, but the cap holds all the same
+        if corrected is None or not (done.report.converged or is_over):
+            return ledger, done, corrections
+        wanted, first = corrected, None
+    assert best is not None  # the loop has run
+    _, ledger, done = best
+    cap = options.metric.max_elements
+    if cap is not None and done.mesh.n_cells > cap:
+        raise MeshingError(
+            f"{done.mesh.n_cells} elements exceed max_elements = {cap:g} after "
+            f"{MAX_CORRECTIONS} corrections",
+            done.report,
+        )
+    return ledger, done, MAX_CORRECTIONS
+
+
+def _miss(asked: MetricOptions, elements: int) -> tuple[bool, float]:
+    """Return whether the cap is exceeded, and how far the number is off; less is better."""
+    over = asked.max_elements is not None and elements > asked.max_elements
+    wanted = asked.max_elements if over else asked.target_elements
+    return over, 0.0 if wanted is None else abs(elements / wanted - 1.0)
+
+
+def _corrected(
+    asked: MetricOptions, used: MetricOptions, ledger: Ledger, elements: int
+) -> MetricOptions | None:
+    """Return options that correct a count of elements that is off, None where it is right."""
+    cap, target = asked.max_elements, asked.target_elements
+    if cap is not None and elements > cap:
+        assert used.max_elements is not None  # it was asked for
+        return replace(used, max_elements=CAP_MARGIN * used.max_elements * cap / elements)
+    if target is None or ledger.capped or not ledger.reached:
+        return None
+    if abs(elements / target - 1.0) <= ELEMENTS_TOLERANCE:
+        return None
+    assert used.target_elements is not None  # it was asked for
+    return replace(used, target_elements=used.target_elements * target / elements)
+
+
+def metric_field_names(
+    fields: Mapping[str, Field], wanted: Sequence[str] | None
+) -> tuple[str, ...]:
+    """Return the names of the fields that make the metric: those wanted, or all at the points.
+
+    Raises
+    ------
+    ValueError
+        If a wanted field is unknown or cannot make a metric, or if there is none.
+    """
+    usable = tuple(
+        name
+        for name, field in fields.items()
+        if field.kind in ("scalar", "vector") and field.on in ("points", "cells")
+    )
+    for name in wanted or ():
+        if name not in fields:
+            raise ValueError(f"unknown field {name!r}; the fields are: {_listed(fields)}")
+        if name not in usable:
+            field = fields[name]
+            raise ValueError(
+                f"field {name!r} is a {field.kind} on {field.on}: a metric needs a scalar or a "
+                "vector on points or cells"
+            )
+    at_points = tuple(name for name in usable if fields[name].on == "points")
+    names = tuple(wanted) if wanted is not None else at_points
+    if not names:
+        raise ValueError(
+            "no scalar or vector field at the points to make a metric of; the fields are: "
+            f"{_listed(fields)}; those on cells take part when metric_fields names them"
+        )
+    return names
+
+
+def _listed(fields: Mapping[str, Field]) -> str:
+    return ", ".join(f"{name} ({field.kind}, {field.on})" for name, field in fields.items()) or "-"

@@ -1,0 +1,336 @@
+"""Adaptation of problems in time: one mesh for a window of instants."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arguments import require
+from ..errors import MeshingError
+from ..meshes.fields import Field, as_fields
+from ..meshes.mesh import Mesh
+from ..metric import from_fields
+from ..metric.scaling import Scale, scale_of
+from ..remeshing.demand import check_targets
+from ..remeshing.project import Project
+from ..remeshing.remesh import remesh
+from ..report import attributes
+from ..telling import telling_once
+from ..transfer import TransferOptions, transfer
+from .adapt import AdaptOptions, Floats, metric_field_names
+from .keeping import KeepOptions, needs_adaptation
+from .settling import check_max_coarsening
+
+Fields = dict[str, Any]
+Advance = Callable[[Mesh, Fields, float, float], Mapping[str, Field | ArrayLike]]
+"""``advance(mesh, fields, begin, end)`` returns the fields at `end` from those at `begin`."""
+
+Initial = Mapping[str, Field | ArrayLike] | Callable[[Mesh], Mapping[str, Field | ArrayLike]]
+
+
+# Hundreds of transfers add up: none may lose mass or make new extrema.
+_BOUNDED = TransferOptions(method="bounded", outside="nearest")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UnsteadyOptions:
+    """How a problem in time is adapted.
+
+    Parameters
+    ----------
+    adapt : AdaptOptions
+        Of every stage; the target is that of one mesh, which serves all instants of a window.
+        The transfer is ``bounded``, and ``nearest`` outside, unless other options are given for it.
+    window : int
+        Steps from one adaptation to the next.
+    passes : int
+        How often a window is solved again on a mesh made for it.
+    max_coarsening : float or None
+        By what factor sizes may at most grow from one mesh to the next, beyond the first; see
+        `LoopOptions`. None means no limit.
+    keep : KeepOptions or None
+        How far the mesh may be from the metric of a window and still serve it, see
+        `needs_adaptation`. None makes `passes` new meshes for every window.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    adapt: AdaptOptions = field(default_factory=AdaptOptions)
+    window: int = 8
+    passes: int = 1
+    max_coarsening: float | None = 2.0
+    keep: KeepOptions | None = field(default_factory=KeepOptions)
+
+    def __post_init__(self) -> None:
+        require(AdaptOptions, adapt=self.adapt)
+        if self.adapt.transfer == AdaptOptions().transfer:
+            object.__setattr__(self, "adapt", replace(self.adapt, transfer=_BOUNDED))
+        for name in ("window", "passes"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")
+        if self.keep is not None:
+            require(KeepOptions, keep=self.keep)
+        check_max_coarsening(self.max_coarsening, self.adapt)
+
+
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """The solution at one time."""
+
+    time: float
+    mesh: Mesh
+    fields: Fields
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """What was done for one window of instants.
+
+    Attributes
+    ----------
+    begin, end : float
+        Times.
+    points, cells : int
+        Size of the mesh that served it.
+    adaptations : int
+        Meshes made for it; 0 when the one before was kept.
+    transfer : dict or None
+        Report of the transfer of the first instant to the mesh.
+    """
+
+    begin: float
+    end: float
+    points: int
+    cells: int
+    adaptations: int
+    transfer: dict[str, Any] | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins only; the keys are those of the attributes."""
+        return attributes(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Unsteady:
+    """The solution at the end, and what was done for every window."""
+
+    last: Instant
+    windows: tuple[Window, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON builtins only: the end `time` and the `windows`."""
+        return {"time": self.last.time, "windows": [window.as_dict() for window in self.windows]}
+
+
+@telling_once()
+def unsteady_loop(
+    advance: Advance,
+    mesh: Mesh,
+    fields: Initial,
+    times: Sequence[float],
+    options: UnsteadyOptions | None = None,
+    *,
+    geometry: Mesh | None = None,
+    project: Project | None = None,
+    callback: Callable[[Instant], object] | None = None,
+) -> Unsteady:
+    """Solve a problem in time on meshes that follow the solution.
+
+    The instants are cut into windows. Each is first solved on the mesh at hand; from all its
+    instants a metric is made, which is the intersection of theirs; if the mesh does not fit that
+    any more, a new one is made, the fields at the *beginning* of the window are transferred to it,
+    and the window is solved again. So the mesh is fine where the solution will be, and each
+    window costs one transfer.
+
+    Parameters
+    ----------
+    advance : callable
+        ``advance(mesh, fields, begin, end)`` returns the fields at `end`. It is called again
+        for instants that are solved again, so it must depend on its arguments only.
+    mesh : Mesh
+        The first mesh. Its boundary is the geometry of every mesh.
+    fields : mapping of str to Field or array, or callable
+        The fields at the first time. ``fields(mesh)`` returns them on any mesh, so that what the
+        first mesh is too coarse for is not lost.
+    times : sequence of float
+        Instants in ascending order, at least two.
+    options : UnsteadyOptions, optional
+    geometry : Mesh, optional
+        Another mesh whose boundary is the geometry.
+    project : callable, optional
+        ``project(points, facet_tag)`` moves (k, d) boundary points onto the true boundary.
+    callback : callable, optional
+        ``callback(instant)`` for the first instant and then each one that is final, in order:
+        the place to write files, see `SeriesWriter`.
+
+    Returns
+    -------
+    Unsteady
+
+    Raises
+    ------
+    ValueError
+        If the times do not ascend, or a field does not fit.
+    MeshingError
+        If `advance` or a stage fails; the message names the window. If the mesh of the target
+        has no room in memory, before anything is solved.
+
+    References
+    ----------
+    .. [1] F. Alauzet, P. J. Frey, P. L. George, B. Mohammadi, 3D transient fixed point mesh
+       adaptation for time-dependent problems, Journal of Computational Physics 222 (2007),
+       sections 3 and 4.
+    """
+    options = UnsteadyOptions() if options is None else options
+    require(UnsteadyOptions, options=options)
+    instants = _ascending(times)
+    if options.adapt.metric.has_count:
+        target = options.adapt.metric.complexity_for(mesh.dim)
+        check_targets(mesh, options.adapt.metric, [target], options.adapt.remesh)
+    shape = _Shape(mesh, geometry if geometry is not None else mesh, project)
+    now = Instant(instants[0], mesh, dict(fields(mesh) if callable(fields) else fields))
+    as_fields(mesh, now.fields)
+    carry = partial(_evaluated, fields) if callable(fields) else partial(_carried, options.adapt)
+    windows: list[Window] = []
+    for ends in _windows(instants, options.window):
+        try:
+            history, window = _solved(advance, now, ends, options, shape, carry)
+        except Exception as error:
+            where = f"window {len(windows)}, from time {now.time:g}"
+            raise MeshingError(f"{where}: {error}", getattr(error, "report", None)) from error
+        if callback is not None:
+            for instant in history[bool(windows) :]:
+                callback(instant)
+        windows.append(window)
+        now, carry = history[-1], partial(_carried, options.adapt)
+    return Unsteady(now, tuple(windows))
+
+
+Carry = Callable[[Instant, Mesh], tuple[Fields, dict[str, Any] | None]]
+
+
+@dataclass(frozen=True)
+class _Shape:
+    first: Mesh
+    geometry: Mesh
+    project: Project | None
+
+
+def _ascending(times: Sequence[float]) -> list[float]:
+    instants = [float(time) for time in times]
+    if len(instants) < 2:
+        raise ValueError(f"times must be at least two, got {len(instants)}")
+    for i, (before, after) in enumerate(itertools.pairwise(instants)):
+        if not before < after:
+            raise ValueError(f"times must ascend: {before:g} at {i} is followed by {after:g}")
+    return instants
+
+
+def _windows(instants: Sequence[float], size: int) -> Iterator[list[float]]:
+    for first in range(1, len(instants), size):
+        yield list(instants[first : first + size])
+
+
+def _solved(
+    advance: Advance,
+    begin: Instant,
+    ends: list[float],
+    options: UnsteadyOptions,
+    shape: _Shape,
+    carry: Carry,
+) -> tuple[list[Instant], Window]:
+    """Solve one window, its beginning included, on a new mesh if the one at hand does not fit."""
+    made, report = 0, None
+    history = _advanced(advance, begin, ends)
+    while made < options.passes:
+        mesh = history[0].mesh
+        metric = _window_metric(history, _on_the_way(options, is_first=mesh is shape.first))
+        if options.keep is not None and not needs_adaptation(mesh, metric, options.keep):
+            break
+        new = remesh(
+            mesh,
+            metric,
+            options.adapt.remesh,
+            geometry=shape.geometry,
+            project=shape.project,
+        ).mesh
+        fields, report = carry(begin, new)
+        history = _advanced(advance, Instant(begin.time, new, fields), ends)
+        made += 1
+    mesh = history[0].mesh
+    return history, Window(begin.time, ends[-1], mesh.n_points, mesh.n_cells, made, report)
+
+
+def _carried(options: AdaptOptions, begin: Instant, mesh: Mesh) -> tuple[Fields, dict[str, Any]]:
+    carried = transfer(begin.mesh, begin.fields, mesh, options.transfer)
+    return carried.fields, carried.report.as_dict()
+
+
+def _evaluated(
+    initial: Callable[[Mesh], Mapping[str, Field | ArrayLike]], begin: Instant, mesh: Mesh
+) -> tuple[Fields, None]:
+    return dict(initial(mesh)), None
+
+
+def _advanced(advance: Advance, start: Instant, ends: list[float]) -> list[Instant]:
+    history = [start]
+    for end in ends:
+        now = history[-1]
+        found = advance(now.mesh, dict(now.fields), now.time, end)
+        as_fields(now.mesh, found)
+        history.append(Instant(end, now.mesh, dict(found)))
+    return history
+
+
+def _on_the_way(options: UnsteadyOptions, *, is_first: bool) -> AdaptOptions:
+    """Return the options for a metric on a mesh; the first mesh knows nothing of the solution."""
+    limit = None if is_first else options.max_coarsening
+    return replace(options.adapt, metric=replace(options.adapt.metric, max_coarsening=limit))
+
+
+def _window_metric(history: Sequence[Instant], options: AdaptOptions) -> Floats:
+    """Return the metric that every instant asks for, at the target complexity.
+
+    A field has one scale for the whole window: where it nearly vanishes it asks for little.
+    """
+    mesh = history[0].mesh
+    instants = [as_fields(mesh, instant.fields) for instant in history]
+    names = metric_field_names(instants[0], options.metric_fields)
+    scales = _window_scales(
+        {name: np.stack([fields[name].values for fields in instants]) for name in names},
+        options.metric.scale,
+    )
+    sources, scale = {}, {}
+    for step, fields in enumerate(instants):
+        for name in names:
+            sources[f"{name} at step {step}"] = fields[name]
+            scale[f"{name} at step {step}"] = scales[name]
+    metric, _ = from_fields(mesh, sources, replace(options.metric, scale=scale))
+    return np.asarray(metric)
+
+
+def _window_scales(values: Mapping[str, Floats], scale: Scale) -> dict[str, float]:
+    """Return by what each field, (instants, n) or (instants, n, d), is divided.
+
+    "complexity" makes fields comparable within one instant; over several it is their range.
+    """
+    asked = scale if isinstance(scale, Mapping) else dict.fromkeys(values, scale)
+    wrong = sorted(set(asked) ^ set(values))
+    if wrong:
+        raise ValueError(f"scale must have a value for each metric field: see {wrong[0]!r}")
+    return {
+        name: scale_of(
+            found.reshape(-1, *found.shape[2:]),
+            "range" if asked[name] == "complexity" else asked[name],
+        )
+        for name, found in values.items()
+    }

@@ -1,0 +1,1 @@
+"""Meshes and fields as immutable arrays, and the rules that they obey."""

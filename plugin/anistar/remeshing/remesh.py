@@ -1,0 +1,218 @@
+"""Remeshing: from a mesh and a metric to a mesh with unit edges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..arguments import require
+from ..core_errors import meshing_errors
+from ..meshes.mesh import Mesh
+from ..metric import check_metric
+from ..telling import tell
+from .contact import check_curves
+from .demand import check_demand
+from .fidelity import smooth_shape, surface_deviations, tag_measures
+from .options import RemeshOptions
+from .project import Project, pointwise
+from .ramp import approached, carried, noted
+from .report import RemeshReport, report_of
+from .size_range import check_sizes
+from .volume_remesh import check_surfaces, remesh_volume
+
+Float = NDArray[np.float64]
+Int = NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Remeshed:
+    """A new mesh, the metric at its points, and the report.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    metric : (n, d, d) float64
+        The given metric, interpolated at the new points (P1 of its logarithm).
+    report : RemeshReport
+    """
+
+    mesh: Mesh
+    metric: Float
+    report: RemeshReport
+
+
+def remesh(
+    mesh: Mesh,
+    M: ArrayLike,
+    options: RemeshOptions | None = None,
+    *,
+    geometry: Mesh | None = None,
+    project: Project | None = None,
+) -> Remeshed:
+    """Return a mesh of the same domain whose edges have length one in the metric.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Carries the metric: P1 interpolation of its logarithm.
+    M : (n, d, d) array
+        Metric at the points of `mesh`, in 1 / length**2. It is taken as given: no bounds,
+        no gradation, no scaling. Only where the mesh is too coarse to say what the metric is
+        between its points, the refinement is limited, see `RemeshOptions`.
+    options : RemeshOptions, optional
+    geometry : Mesh, optional
+        The mesh whose facets are the shape of the domain, `mesh` by default. Loops give the
+        first mesh, so that curved boundaries do not drift. In 3D the facets, ridges and corners
+        are those of `mesh`, and the geometry gives the shape of the curved ones.
+    project : callable, optional
+        ``project(points, facet_tag)`` moves new points of curves, in 3D of curved surfaces, onto
+        the true geometry: by at most half of the extent of the domain, and so that a point
+        that is projected again stays. In 3D ridges keep to the curve through the points of the
+        geometry.
+
+    Returns
+    -------
+    Remeshed
+        Its metric is interpolated by logarithms.
+
+    Raises
+    ------
+    MetricError
+        If a tensor is not symmetric positive definite, or asks for lengths out of the range of
+        double precision; the point is named.
+    MeshingError
+        If the facets of the geometry cross, the geometry is not the domain of `mesh`, a tag
+        would be lost, the mesh has no room in memory (see `RemeshOptions`), or `project` does
+        not land.
+
+    References
+    ----------
+    .. [1] Loseille, Loehner, Cavity-based operators for mesh adaptation, 2013.
+    .. [2] Bossen, Heckbert, A pliant method for anisotropic mesh generation, 1996.
+    """
+    options = RemeshOptions() if options is None else options
+    require(RemeshOptions, options=options)
+    geometry = mesh if geometry is None else geometry
+    _check_call(mesh, geometry, project, options)
+    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
+    scale = _unit_scale(mesh.points)
+    call = _call_core if mesh.dim == 2 else remesh_volume
+    with np.errstate(over="ignore", under="ignore"):
+        metric /= scale * scale  # a copy, as check_metric returns it
+    check_sizes(mesh, metric, scale)
+    ramp = approached(mesh, metric, scale, options.max_refinement)
+    check_demand(mesh, ramp.metric, scale, options)
+    raw = noted(call(mesh, ramp.metric, geometry, project, options, scale), ramp)
+    raw["metric"] *= scale * scale
+    new = _new_mesh(raw, mesh, geometry, scale)
+    metric = carried(mesh, check_metric(M), new) if ramp.is_limited.any() else raw["metric"]
+    is_curved = mesh.dim == 2 or raw["counts"]["curved"] > 0
+    shape = smooth_shape(geometry, options) if is_curved else None
+    report = report_of(
+        raw,
+        new,
+        tags=tag_measures(geometry, shape, new, has_ridges=len(mesh.edges) > 0),
+        deviations=surface_deviations(geometry, shape, new) if shape and not project else (),
+    )
+    if mesh.dim == 2:
+        check_curves(new, report)
+    elif is_curved:
+        check_surfaces(new, report)
+    tell(report.warnings)
+    return Remeshed(new, metric, report)
+
+
+def _check_call(
+    mesh: Mesh, geometry: Mesh, project: Project | None, options: RemeshOptions
+) -> None:
+    if options.shape == "polyhedron" and project is not None:
+        raise ValueError(
+            'project moves points off the facets, which are the domain with shape="polyhedron": '
+            "leave one of the two out"
+        )
+    if geometry.dim != mesh.dim:
+        raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh {mesh.dim}")
+    _check_frozen(options.frozen_tags, geometry)
+
+
+def _new_mesh(raw: dict[str, Any], mesh: Mesh, geometry: Mesh, scale: float) -> Mesh:
+    """Return what the core made of a mesh, in the coordinates of that mesh."""
+    points = raw["points"]
+    points /= scale
+    kept = geometry if mesh.dim == 2 else mesh
+    ridges = {name: raw[name] for name in ("edges", "edge_tags") if name in raw}
+    return Mesh._trusted(
+        points=points,
+        cells=raw["cells"],
+        cell_tags=raw["cell_tags"],
+        facets=raw["facets"],
+        facet_tags=raw["facet_tags"],
+        corners=_same_points(kept.points[kept.corners], points),
+        names={**mesh.names, **geometry.names},
+        **ridges,
+    )
+
+
+def _unit_scale(points: Float) -> float:
+    """Return the power of two that brings the extent of the points to about one.
+
+    The core then computes with the same numbers whatever the unit of length, as long as units
+    differ by powers of two.
+    """
+    extent = float(np.ptp(points, axis=0).max())
+    return float(np.ldexp(1.0, -int(np.frexp(extent)[1])))
+
+
+def _call_core(
+    mesh: Mesh,
+    metric: Float,
+    geometry: Mesh,
+    project: Project | None,
+    options: RemeshOptions,
+    scale: float,
+) -> dict[str, Any]:
+    """Remesh in scaled coordinates, as the metric is already; what comes back is scaled.
+
+    The core knows regions by their rank, so that every tag is one, and -1 the outside.
+    """
+    regions, ranks = np.unique(geometry.cell_tags, return_inverse=True)
+    with meshing_errors(scale):
+        raw: dict[str, Any] = _core.remesh2(
+            mesh.points * scale,
+            mesh.cells,
+            metric,
+            geometry.points * scale,
+            geometry.cells,
+            ranks.astype(np.int32),
+            geometry.facets,
+            geometry.facet_tags,
+            geometry.corners,
+            np.array(options.frozen_tags, dtype=np.int32),
+            options.as_shape(),
+            options.as_settings(),
+            None if project is None else pointwise(project, geometry, scale),
+            options.callback,
+        )
+    raw["cell_tags"] = regions[raw["cell_tags"]]
+    return raw
+
+
+def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:
+    unknown = sorted(set(frozen) - set(geometry.facet_tags.tolist()))
+    if unknown:
+        raise ValueError(f"frozen_tags: no facet of the geometry has tag {unknown[0]}")
+
+
+def _same_points(wanted: Float, points: Float) -> Int:
+    """Return the index in `points` of every row of `wanted`, which occurs there bit by bit."""
+    if len(wanted) == 0:
+        return np.zeros(0, np.int32)
+    row = np.dtype((np.void, points.dtype.itemsize * points.shape[1]))
+    keys = np.ascontiguousarray(points).view(row).ravel()
+    found = np.flatnonzero(np.isin(keys, np.ascontiguousarray(wanted).view(row).ravel()))
+    return found.astype(np.int32)

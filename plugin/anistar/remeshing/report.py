@@ -1,0 +1,146 @@
+"""What a remeshing did, and how good its result is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ..meshes.mesh import Mesh
+from .bad_cells import BadCell, quality_bound, worst_cells
+from .fidelity import SurfaceDeviation, TagMeasure, shape_warnings
+from .long_edges import LONG_EDGE, LongEdge, longest_edges
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RemeshReport:
+    """What `remesh` did and how good the result is.
+
+    Attributes
+    ----------
+    converged : bool
+        The run ended by itself, not by a budget; with ``until_consistent`` also: every star
+        agrees.
+    stop_reason : str
+        ``finished``, ``max_vertices``, ``max_seconds`` or ``max_refinement``.
+    limited : dict of str to float
+        Where `max_refinement` acted: ``share`` of the points of the given mesh, and ``excess``,
+        the factor by which the sizes asked for were below the bound at most (1: nowhere). The
+        figures of this report are then in the metric with the limit.
+    n_points, n_cells : int
+        Size of the new mesh.
+    statistics : dict
+        ``edge_unit`` (fraction of edges within [1/sqrt 2, sqrt 2]), ``edge_min``, ``edge_mean``,
+        ``edge_max``, ``edge_bins`` and ``edge_histogram``; ``q_min``, ``q_mean`` and
+        ``q_histogram`` of the mean ratio, all in `Remeshed.metric`.
+    kept_quality : float
+        Least mean ratio of the input in the given metric, but .2 at most: no cell of the new mesh
+        should be worse.
+    n_bad_cells : int
+        Cells whose mean ratio is below `kept_quality`, or below 1e-3: what no operation could
+        improve.
+    bad_cells : tuple of BadCell
+        The worst of them, ten at most: row, quality and place.
+    long_edges : tuple of LongEdge
+        Edges longer than 2 in the metric, the ten longest at most: ends, length and place.
+    agreement : str
+        ``done``, ``off``, or ``skipped:`` and why; in 3D also what was left when it stalled.
+    consistency : dict
+        Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
+        ``inconsistency``, ``boundary``), ``rounds``, ``stop_reason``, and
+        ``ln_gamma_p90``: 10 % of the edges of the cells that still fail have a larger ln gamma
+        between the metrics at their ends (0 when none fails). Compare it with `distortion`.
+    simplex_ok, star_ok : float or None
+        Certified fractions of the cells and of the stars (see `certify`); None when the
+        agreement phase was off or a budget had stopped the run, and in 3D, where the
+        certificate takes longer than a pass: ask `certify`.
+    distortion : dict of str to float
+        Quantiles of ln gamma, the distortion of the metric along the edges.
+    tags : tuple of TagMeasure
+        Measure of every facet and region tag against the geometry and against the smooth shape
+        through its points.
+    deviations : tuple of SurfaceDeviation
+        How far the new vertices of curves and curved surfaces lie from the given facets, for every
+        facet tag; empty where all are straight, and with `project`, whose shape is its own.
+    warnings : tuple of str
+        Where the shape of the new mesh may not be what is meant: a deviation that no smooth shape
+        has, or a measure that changed by more than 1 %.
+    counts : dict of str to float
+        Operations made; ``consistency_moves`` are the vertices that Algorithm 2 moved in 3D;
+        ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
+        legs have equal lengths, and those without a common one. ``disagreeing_before`` and
+        ``disagreeing_after`` count the facets about which the metrics of the vertices of their
+        two cells disagree, around the agreement phase. In 3D ``curved`` is 1 when some surface or
+        ridge is curved.
+    seconds : dict of str to float
+        Wall time of each phase.
+    """
+
+    converged: bool
+    stop_reason: str
+    limited: dict[str, float]
+    n_points: int
+    n_cells: int
+    statistics: dict[str, Any]
+    kept_quality: float
+    n_bad_cells: int
+    bad_cells: tuple[BadCell, ...]
+    long_edges: tuple[LongEdge, ...]
+    agreement: str
+    consistency: dict[str, Any]
+    simplex_ok: float | None
+    star_ok: float | None
+    distortion: dict[str, float]
+    tags: tuple[TagMeasure, ...]
+    deviations: tuple[SurfaceDeviation, ...]
+    warnings: tuple[str, ...]
+    counts: dict[str, float]
+    seconds: dict[str, float]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the report as JSON builtins."""
+        out = asdict(self)
+        out["tags"] = [tag.as_dict() for tag in self.tags]
+        out["deviations"] = [it.as_dict() for it in self.deviations]
+        out["warnings"] = list(self.warnings)
+        out["long_edges"] = [edge.as_dict() for edge in self.long_edges]
+        out["bad_cells"] = [{**asdict(bad), "place": list(bad.place)} for bad in self.bad_cells]
+        return out
+
+
+def report_of(
+    raw: Mapping[str, Any],
+    new: Mesh,
+    tags: tuple[TagMeasure, ...],
+    deviations: tuple[SurfaceDeviation, ...],
+) -> RemeshReport:
+    """Return the report on what the core returned, and on its shape beside the geometry."""
+    n_bad: int = 0
+    bad: tuple[BadCell, ...] = ()
+    bound = quality_bound(raw["kept_quality"])
+    if not raw["statistics"]["q_min"] >= bound:
+        n_bad, bad = worst_cells(new, raw["metric"], bound)
+    is_long = raw["statistics"]["edge_max"] > LONG_EDGE
+    return RemeshReport(
+        converged=raw["stop_reason"] == "finished"
+        and raw["consistency"]["stop_reason"] in ("", "consistent"),
+        stop_reason=raw["stop_reason"],
+        limited=raw["limited"],
+        n_points=new.n_points,
+        n_cells=new.n_cells,
+        statistics=raw["statistics"],
+        kept_quality=raw["kept_quality"],
+        n_bad_cells=n_bad,
+        bad_cells=bad,
+        long_edges=longest_edges(new, raw["metric"]) if is_long else (),
+        agreement=raw["agreement"],
+        consistency=raw["consistency"],
+        simplex_ok=raw["simplex_ok"],
+        star_ok=raw["star_ok"],
+        distortion=raw["distortion"],
+        tags=tags,
+        deviations=deviations,
+        warnings=shape_warnings(tags, deviations),
+        counts=raw["counts"],
+        seconds=raw["seconds"],
+    )

@@ -1,0 +1,110 @@
+"""A series of meshes with fields: VTU files and the PVD file that lists them."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+from numpy.typing import ArrayLike
+
+from ..formats import write
+from ..meshes.fields import Field
+from ..meshes.mesh import Mesh
+from ..report import write_text
+
+Item = tuple[Mesh, Mapping[str, Field | ArrayLike]]
+
+
+def write_series(path: str | os.PathLike[str], items: Iterable[Item]) -> list[Path]:
+    """Write meshes and fields as ``name_000.vtu``, ``name_001.vtu``, ... and ``name.pvd``.
+
+    ParaView opens the PVD file as a time series whose time is the number of the item. Files
+    ``name_*.vtu`` with higher numbers, left by a longer series, are removed.
+
+    Parameters
+    ----------
+    path : path
+        The PVD file.
+    items : iterable of (Mesh, fields)
+        What to write, in order.
+
+    Returns
+    -------
+    list of Path
+        The files written, the PVD file last.
+
+    Raises
+    ------
+    ValueError
+        If `path` does not end in .pvd.
+    """
+    index = Path(path)
+    _require_pvd(index)
+    written: list[Path] = []
+    for number, (mesh, fields) in enumerate(items):
+        written.append(member(index, number))
+        write(written[-1], mesh, fields)
+    return [*written, write_index(index, range(len(written)))]
+
+
+def member(path: str | os.PathLike[str], number: int) -> Path:
+    """Return the path of one mesh of the series that a PVD file lists."""
+    index = Path(path)
+    return index.with_name(f"{index.stem}_{number:03d}.vtu")
+
+
+class SeriesWriter:
+    """Writes a series as it comes about, each member with its time.
+
+    Parameters
+    ----------
+    path : path
+        The PVD file; it is brought up to date after every member.
+
+    Raises
+    ------
+    ValueError
+        If `path` does not end in .pvd.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        _require_pvd(self.path)
+        self._times: list[float] = []
+
+    def add(self, time: float, mesh: Mesh, fields: Mapping[str, Field | ArrayLike]) -> None:
+        """Write one more mesh with fields; the mesh may be another than the one before."""
+        write(member(self.path, len(self._times)), mesh, fields)
+        self._times.append(float(time))
+        write_index(self.path, self._times)
+
+
+def write_index(path: str | os.PathLike[str], times: Sequence[float]) -> Path:
+    """Write the PVD file of a series with one mesh for each time, and remove members beyond."""
+    index = Path(path)
+    _require_pvd(index)
+    _remove_stale(index, keep=len(times))
+    lines = [
+        f"    <DataSet timestep={quoteattr(str(time))} file={quoteattr(member(index, i).name)}/>"
+        for i, time in enumerate(times)
+    ]
+    header = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">']
+    text = "\n".join([*header, "  <Collection>", *lines, "  </Collection>", "</VTKFile>", ""])
+    write_text(index, text)
+    return index
+
+
+def _require_pvd(index: Path) -> None:
+    if index.suffix != ".pvd":
+        raise ValueError(f"a series is written to a .pvd file, not {index.name!r}")
+
+
+def _remove_stale(index: Path, keep: int) -> None:
+    pattern = re.compile(re.escape(index.stem) + r"_(\d{3,})\.vtu")
+    for path in index.parent.iterdir():
+        match = pattern.fullmatch(path.name)
+        if match and int(match.group(1)) >= keep:
+            path.unlink()

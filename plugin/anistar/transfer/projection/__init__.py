@@ -1,0 +1,1 @@
+"""Projections through the intersection of two meshes, which keep integrals."""

@@ -1,0 +1,1 @@
+"""Fields as numbers: columns, values at nodes, labels, integrals."""
