@@ -4,32 +4,22 @@ A metric is an array (n, d, d) of symmetric positive definite tensors at the poi
 in 1 / length**2: an edge v should satisfy ``v^T M v = 1``.
 """
 
-from .bounds import bounded
-from .checks import MetricError, check_metric
-from .coarsening import limited_coarsening
-from .combination import intersected, limited_step, mean
-from .complexity import ELEMENTS_PER_COMPLEXITY, complexity
-from .curvature import curvature_metric
-from .distortion import distortion
-from .error_model import predicted_error
-from .estimate import Estimate, estimate
-from .goal import (
-    diffusion_hessian,
-    flux_hessian,
-    goal_metric,
-    weighted_hessian,
-    weighted_hessian_metric,
-)
-from .gradation import graded
-from .graph import mesh_edges
-from .implied import implied_metric
-from .indicators import dwr_metric
-from .instants import SpaceTimeLedger, from_instants
-from .ledger import Ledger, Stage
+from .kernels.graph import mesh_edges
+from .laws.bounds import bounded
+from .laws.coarsening import limited_coarsening
+from .laws.complexity import ELEMENTS_PER_COMPLEXITY, complexity
+from .laws.distortion import distortion
+from .laws.error_model import predicted_error
+from .laws.estimate import Estimate, estimate
+from .laws.gradation import graded
+from .laws.implied import implied_metric
+from .laws.normalisation import normalised, normalised_space_time
+from .laws.refinement import limited_refinement
 from .mesh import MeshLike
-from .normalisation import normalised, normalised_space_time
-from .options import MetricOptions
-from .pipeline import from_fields
+from .pipeline.from_fields import from_fields
+from .pipeline.from_instants import SpaceTimeLedger, from_instants
+from .pipeline.ledger import Ledger, Stage
+from .pipeline.options import MetricOptions
 from .recovery import (
     METHODS,
     RecoveryConfidence,
@@ -39,11 +29,21 @@ from .recovery import (
     recover_hessian,
     recovery_confidence,
 )
-from .refinement import limited_refinement
-from .size_fields import size_in_box, size_near_boundary, size_near_points
-from .sizes import from_sizes
-from .tensor_functions import absolute, exp_metric, interpolated, log_metric, sqrt_metric
-from .tensor_orders import from_components, to_components
+from .sources.curvature import curvature_metric
+from .sources.goal import (
+    diffusion_hessian,
+    flux_hessian,
+    goal_metric,
+    weighted_hessian,
+    weighted_hessian_metric,
+)
+from .sources.indicators import dwr_metric
+from .sources.size_fields import size_in_box, size_near_boundary, size_near_points
+from .sources.sizes import from_sizes
+from .tensors.checks import MetricError, check_metric
+from .tensors.combination import intersected, limited_step, mean
+from .tensors.functions import absolute, exp_metric, interpolated, log_metric, sqrt_metric
+from .tensors.orders import from_components, to_components
 
 __all__ = [
     "ELEMENTS_PER_COMPLEXITY",

@@ -7,7 +7,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import norms
+from .kernels.algebra import norms
 
 Array = NDArray[np.float64]
 

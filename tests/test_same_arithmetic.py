@@ -34,15 +34,15 @@ MAY = {
     "anistar.transfer.values.labels:majority @": SPARSE,
     "anistar.transfer.projection.loading:overlapped.loaded @": SPARSE,
     "anistar.transfer.projection.l2_projection:Projector.* @": SPARSE,
-    "anistar.metric.boundary_shape:_two_rings @": SPARSE,
-    "anistar.metric.graph:_opposite_pairs **": EXACT,
-    "anistar.metric.indicators:dwr_metric scipy.optimize": "a root-find in plain arithmetic",
+    "anistar.metric.sources.boundary_shape:_two_rings @": SPARSE,
+    "anistar.metric.kernels.graph:_opposite_pairs **": EXACT,
+    "anistar.metric.sources.indicators:dwr_metric scipy.optimize": "root-find in plain arithmetic",
     "anistar.metric.kernels.elementary:* numpy.*": "the NumPy twins, used without the core",
-    "anistar.metric.recovery.boundary:Boundary.extrapolated @": SPARSE,
-    "anistar.metric.recovery.cells:boundary_facets **": EXACT,
-    "anistar.metric.recovery.fit:_patches @": SPARSE,
-    "anistar.metric.recovery.projection:L2Projection.* @": SPARSE,
-    "anistar.metric.recovery.quadratic:quadratic_cloud @": SPARSE,
+    "anistar.metric.recovery.methods.boundary:Boundary.extrapolated @": SPARSE,
+    "anistar.metric.recovery.samples.cells:boundary_facets **": EXACT,
+    "anistar.metric.recovery.patches.fit:_patches @": SPARSE,
+    "anistar.metric.recovery.methods.projection:L2Projection.* @": SPARSE,
+    "anistar.metric.recovery.methods.quadratic:quadratic_cloud @": SPARSE,
 }
 
 # The one file of the core that holds elementary functions of its own.

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import graph as graphs
-from .. import growth
-from ..graph import VertexGraph
-from ..growth import Growth
 from ..mesh import MeshLike
-from . import compiled
+from . import compiled, growth
+from . import graph as graphs
+from .graph import VertexGraph
+from .growth import Growth
 
 Array = NDArray[np.float64]
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import simultaneous_reduction
-from . import compiled
+from . import compiled, simultaneous_reduction
 
 Array = NDArray[np.float64]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..graph import mesh_edges
 from ..mesh import MeshLike
 from . import compiled
+from .graph import mesh_edges
 
 Array = NDArray[np.float64]
 

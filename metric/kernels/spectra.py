@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import jacobi
-from . import compiled
+from . import compiled, jacobi
 
 Array = NDArray[np.float64]
 

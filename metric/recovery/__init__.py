@@ -9,7 +9,7 @@ from .recover import (
     recover_hessian,
     recovery_confidence,
 )
-from .spaces import Samples, p2_nodes, read_fields
+from .samples.spaces import Samples, p2_nodes, read_fields
 
 __all__ = [
     "METHODS",

@@ -9,21 +9,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..graph import VertexGraph
+from ..kernels.graph import VertexGraph
 from ..mesh import MeshLike
 from .confidence import RecoveryConfidence
-from .cut import joined_gradients, joined_hessians, joined_worst
-from .larger_patches import is_measurable
-from .methods import (
+from .methods.choice import (
     RecoveredHessian,
     hessian_as_found,
     recovered_gradient,
     recovered_hessian,
 )
-from .noise import hessian_norm
+from .methods.larger_patches import is_measurable
+from .methods.setting import Setting, setting_of
 from .options import RecoveryOptions
-from .setting import Setting, setting_of
-from .spaces import Samples, grouped, read_fields, read_samples
+from .patches.noise import hessian_norm
+from .samples.cut_mesh import joined_gradients, joined_hessians, joined_worst
+from .samples.spaces import Samples, grouped, read_fields, read_samples
 
 Array = NDArray[np.float64]
 

@@ -26,9 +26,9 @@ from rich.table import Table
 from anistar import Mesh, certify, metric, remesh
 from anistar.judging.interpolation_error import l2_error
 from anistar.judging.quality import quality
-from anistar.metric.gradation import GrowthLaw, grade_on
 from anistar.metric.kernels.gradation import wide_graph
-from anistar.metric.rootfind import rescaling
+from anistar.metric.laws.gradation import GrowthLaw, grade_on
+from anistar.metric.pipeline.rootfind import rescaling
 
 PASSES = 4
 GRID_3D = 26**3

@@ -10,7 +10,7 @@ from harsh_judgement import run_harsh_case
 from meshes import square
 
 from anistar.meshes.mesh import Mesh
-from anistar.metric.gradation import GrowthLaw, grade_on, wide_graph
+from anistar.metric.laws.gradation import GrowthLaw, grade_on, wide_graph
 
 
 @pytest.fixture(scope="module", params=[(2, 30), (3, 12)], ids=["2D", "3D"])

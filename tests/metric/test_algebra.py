@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from metric_meshes import is_at_least, random_metrics
 
 from anistar import metric
-from anistar.metric.algebra import determinant, eigh, log_determinant, lower_factor
+from anistar.metric.kernels.algebra import determinant, eigh, log_determinant, lower_factor
 from anistar.metric.kernels.spectra import compose
 
 dims = st.sampled_from([2, 3])

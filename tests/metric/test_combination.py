@@ -8,9 +8,8 @@ from meshes import cube, square
 from metric_meshes import box, is_at_least, random_metrics
 
 from anistar import metric
-from anistar.metric import jacobi, simultaneous_reduction
-from anistar.metric.algebra import log_determinant
-from anistar.metric.kernels import compiled
+from anistar.metric.kernels import compiled, jacobi, simultaneous_reduction
+from anistar.metric.kernels.algebra import log_determinant
 from anistar.metric.kernels.intersection import intersect as compiled_intersect
 from anistar.metric.kernels.pieces import pieces
 from anistar.metric.kernels.spectra import spectra

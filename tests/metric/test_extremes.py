@@ -5,10 +5,9 @@ import pytest
 from metric_meshes import box, from_arrays, is_at_least
 
 from anistar import metric
-from anistar.metric import growth
-from anistar.metric.graph import wide_graph
-from anistar.metric.kernels import compiled
+from anistar.metric.kernels import compiled, growth
 from anistar.metric.kernels import gradation as kernels
+from anistar.metric.kernels.graph import wide_graph
 
 SQUARE = from_arrays(
     np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), np.array([[0, 1, 2], [0, 2, 3]])

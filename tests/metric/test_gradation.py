@@ -6,11 +6,10 @@ import pytest
 from metric_meshes import box, from_arrays, is_at_least, random_metrics, stretched, tanh_layer
 
 from anistar import metric
-from anistar.metric import growth
-from anistar.metric.algebra import eigh
-from anistar.metric.graph import edge_graph, wide_graph
-from anistar.metric.kernels import compiled
+from anistar.metric.kernels import compiled, growth
 from anistar.metric.kernels import gradation as kernels
+from anistar.metric.kernels.algebra import eigh
+from anistar.metric.kernels.graph import edge_graph, wide_graph
 
 MODELS = ["physical", "metric", "mixed"]
 both_dims = pytest.mark.parametrize("dim", [2, 3])
@@ -154,7 +153,7 @@ def test_gradation_is_invariant_to_the_unit_of_length():
 
 
 def test_the_round_limit_stops_the_queue_and_is_told(caplog, monkeypatch):
-    from anistar.metric import gradation
+    from anistar.metric.laws import gradation
 
     mesh = box(10, 2)
     monkeypatch.setattr(gradation, "MAX_ROUNDS", 2)

@@ -6,7 +6,7 @@ from metric_meshes import box, is_at_least, random_metrics, stretched, tanh_laye
 from scipy.linalg import expm
 
 from anistar import metric
-from anistar.metric.complexity import exp_divided_difference
+from anistar.metric.laws.complexity import exp_divided_difference
 
 
 @settings(derandomize=True, deadline=None, max_examples=60)

@@ -8,9 +8,9 @@ from metric_meshes import box, is_at_least, random_metrics, stretched, tanh_laye
 
 from anistar import metric
 from anistar.metric import MetricOptions, from_fields
-from anistar.metric.finishing import finishing_on
-from anistar.metric.gradation import TOLERANCE, grade_on
-from anistar.metric.rootfind import MAX_EVALUATIONS, rescaling
+from anistar.metric.laws.gradation import TOLERANCE, grade_on
+from anistar.metric.pipeline.finishing import finishing_on
+from anistar.metric.pipeline.rootfind import MAX_EVALUATIONS, rescaling
 
 
 def layer(mesh, steepness=20.0):
@@ -266,7 +266,10 @@ def test_the_distortion_of_the_result_is_computed_once(monkeypatch):
         calls.append(1)
         return metric.distortion(mesh, M)
 
-    for module in (import_module(f"anistar.metric.{name}") for name in ("estimate", "pipeline")):
+    for module in (
+        import_module(f"anistar.metric.{name}")
+        for name in ("laws.estimate", "pipeline.from_fields")
+    ):
         monkeypatch.setattr(module, "distortion", counted)
     mesh = box(4, 2)
     metric.from_fields(mesh, {"u": mesh.points[:, 0] ** 2}, MetricOptions(target_complexity=50.0))

@@ -5,7 +5,7 @@ import pytest
 from metric_meshes import box, random_metrics
 
 from anistar import metric
-from anistar.metric.checks import LARGEST_RATIO
+from anistar.metric.tensors.checks import LARGEST_RATIO
 
 
 def stretched(ratio, dim=2, size=1.0, angle=0.4):

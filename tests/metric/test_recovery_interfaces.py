@@ -3,7 +3,7 @@ import pytest
 from metric_meshes import box, from_arrays
 
 from anistar import metric
-from anistar.metric.recovery.cut import cut_open
+from anistar.metric.recovery.samples.cut_mesh import cut_open
 
 METHODS = [m for m in metric.METHODS if m != "auto"]
 

@@ -6,7 +6,7 @@ from metric_meshes import ArrayMesh, box, is_at_least, random_metrics, stretched
 from scipy.spatial import ConvexHull
 
 from anistar import metric
-from anistar.metric.distance import distance_to_facets
+from anistar.metric.sources.distance import distance_to_facets
 
 dims = st.sampled_from([2, 3])
 seeds = st.integers(0, 2**32 - 1)

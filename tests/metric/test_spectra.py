@@ -2,15 +2,14 @@ import numpy as np
 import pytest
 from metric_meshes import random_metrics
 
-from anistar.metric import jacobi
-from anistar.metric.algebra import (
+from anistar.metric.kernels import compiled, jacobi
+from anistar.metric.kernels.algebra import (
     determinant,
     inverse,
     log_determinant,
     lower_factor,
     solved,
 )
-from anistar.metric.kernels import compiled
 from anistar.metric.kernels.spectra import compose, product, spectra
 
 both_dims = pytest.mark.parametrize("dim", [2, 3])

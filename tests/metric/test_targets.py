@@ -8,7 +8,7 @@ from metric_meshes import box, random_metrics, tanh_layer
 
 from anistar import metric
 from anistar.metric import MetricOptions, from_fields, from_instants
-from anistar.metric.error_model import MEAN_SQUARE, MESHER_FACTOR, norm_ratio
+from anistar.metric.laws.error_model import MEAN_SQUARE, MESHER_FACTOR, norm_ratio
 
 derandomised = settings(derandomize=True, deadline=None, max_examples=20)
 dims = st.sampled_from([2, 3])

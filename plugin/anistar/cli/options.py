@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from ..loops.adapt import AdaptOptions
 from ..loops.aliases import MMG
-from ..metric.aliases import PETSC_PREFIX, asks_nothing, our_name, our_value
+from ..metric.pipeline.aliases import PETSC_PREFIX, asks_nothing, our_name, our_value
 from ..transfer import METHODS, OUTSIDE
 
 Number = TypeVar("Number", int, float)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
-from ..metric.algebra import congruent, eigenvalues, lower_factor
+from ..metric.kernels.algebra import congruent, eigenvalues, lower_factor
 from .certificate import Certificate
 from .quality import mean_ratios, metric_lengths
 

@@ -14,7 +14,7 @@ from .. import _core
 from ..core_errors import meshing_errors
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
-from ..metric.algebra import solved
+from ..metric.kernels.algebra import solved
 from ..report import as_builtin, attributes
 
 Float = NDArray[np.float64]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes, unique_edges
 from ..metric import check_metric
-from ..metric.algebra import lower_factor
+from ..metric.kernels.algebra import lower_factor
 from ..metric.kernels.elementary import log, power
 from ..report import attributes
 

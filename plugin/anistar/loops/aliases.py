@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from ..metric.aliases import MMG_ALIASES, advice, asks_nothing, flattened, our_name, our_value
+from ..metric.pipeline.aliases import (
+    MMG_ALIASES,
+    advice,
+    asks_nothing,
+    flattened,
+    our_name,
+    our_value,
+)
 
 #: Mmg's spelling of an option, and ours.
 MMG = {**MMG_ALIASES, "hausd": "hausdorff_number", "ar": "ridge_angle"}

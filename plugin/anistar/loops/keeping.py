@@ -13,7 +13,7 @@ from ..judging.quality import UNIT, metric_lengths
 from ..meshes.mesh import Mesh
 from ..meshes.topology import unique_edges
 from ..metric import ELEMENTS_PER_COMPLEXITY, check_metric, complexity, implied_metric
-from ..metric.complexity import REAL_ELEMENTS_PER_COMPLEXITY
+from ..metric.laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY
 
 Floats = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from ..errors import MeshingError
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric import from_fields
-from ..metric.scaling import Scale, scale_of
+from ..metric.pipeline.scaling import Scale, scale_of
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
 from ..remeshing.remesh import remesh

@@ -14,8 +14,8 @@ from ..memory import available_memory
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes
 from ..metric import MetricOptions, complexity
-from ..metric.complexity import REAL_ELEMENTS_PER_COMPLEXITY, integral_of_exponential
 from ..metric.kernels.elementary import log
+from ..metric.laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY, integral_of_exponential
 from .options import RemeshOptions
 
 Floats = NDArray[np.float64]

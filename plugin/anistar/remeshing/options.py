@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..metric.refinement import check_refinement
+from ..metric.laws.refinement import check_refinement
 from .consistency_options import ConsistencyOptions
 
 Callback = Callable[[str, float], object]

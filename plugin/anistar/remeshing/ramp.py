@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..metric import MetricError, exp_metric, log_metric
-from ..metric.refinement import Refinement, refinement_limited
+from ..metric.laws.refinement import Refinement, refinement_limited
 from ..telling import tell
 from ..transfer import TransferOptions, transfer
 

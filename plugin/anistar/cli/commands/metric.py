@@ -26,8 +26,8 @@ from ...metric import (
     limited_step,
     mean,
 )
-from ...metric.finishing import finishing_on
-from ...metric.options import TARGETS
+from ...metric.pipeline.finishing import finishing_on
+from ...metric.pipeline.options import TARGETS
 from .. import console
 from ..files import replaced_inputs, writable
 from ..options import adapt_options, add_metric_options, numbers

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ...metric import MetricOptions, dwr_metric, goal_metric, recover_hessian
-from ...metric.aim import aimed_at
-from ...metric.finishing import finishing_on
+from ...metric.pipeline.finishing import finishing_on
+from ...metric.pipeline.target import aimed_at
 
 Floats = NDArray[np.float64]
 

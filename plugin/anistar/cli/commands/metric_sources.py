@@ -19,7 +19,7 @@ from ...metric import (
     size_near_boundary,
     size_near_points,
 )
-from ...metric.checks import REPAIRS
+from ...metric.tensors.checks import REPAIRS
 from ..options import numbers
 
 Floats = NDArray[np.float64]

@@ -13,7 +13,7 @@ from ...errors import FormatError
 from ...meshes.fields import Field, Kind
 from ...meshes.mesh import Mesh
 from ...meshes.violations import point_violations, volume_signs
-from ...metric.tensor_orders import from_components
+from ...metric.tensors.orders import from_components
 from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh
 
 _log = logging.getLogger(__name__)

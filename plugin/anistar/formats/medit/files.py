@@ -16,7 +16,7 @@ from ...atomic import all_replaced, replaced
 from ...errors import FormatError
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
-from ...metric.tensor_orders import to_components
+from ...metric.tensors.orders import to_components
 from ..content.notes import names_of
 from ..content.raw import Array, Block, RawMesh, not_read
 from ..parsing.reading import reading

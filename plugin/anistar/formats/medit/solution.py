@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...metric.tensor_orders import from_components
+from ...metric.tensors.orders import from_components
 from ..content.notes import fields_of
 from ..content.raw import Array
 from .gmf_container import Container, columns_of

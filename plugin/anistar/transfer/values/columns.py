@@ -9,7 +9,7 @@ import numpy as np
 
 from ...meshes.fields import Field
 from ...meshes.topology import Float
-from ...metric.algebra import eigenvalues, exp_metric, log_metric
+from ...metric.kernels.algebra import eigenvalues, exp_metric, log_metric
 
 
 def as_columns(field: Field, *, logarithmic: bool) -> Float:

@@ -1,0 +1,84 @@
+"""The stages that a factor on the metric goes through: bound and grade."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernels.algebra import log_determinant
+from ..kernels.gradation import wide_graph
+from ..kernels.graph import VertexGraph
+from ..kernels.growth import Growth
+from ..laws.bounds import check_bounds, clipped
+from ..laws.complexity import integral_of_exponential
+from ..laws.gradation import TOLERANCE, GrowthLaw, grade_on
+from ..mesh import MeshLike, cell_volumes, diameter
+from ..tensors.checks import check_result
+from .ledger import Stage
+from .options import MetricOptions
+
+Array = NDArray[np.float64]
+
+MAX_REPEATS = 5
+"""Of the gradation where the bound of anisotropy changes its result; two are usual."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finishing:
+    """Bounds and gradation on one mesh, with what they need at hand."""
+
+    mesh: MeshLike
+    graph: VertexGraph
+    volumes: Array
+    h_min: Array | None
+    h_max: Array
+    a_max: Array | None
+    law: GrowthLaw
+
+    def bounded(self, M: Array) -> Array:
+        """Bound a metric."""
+        return check_result(clipped(M, self.h_min, self.h_max, self.a_max), "the bounds")
+
+    def finished(self, M: Array) -> Growth:
+        """Bound and grade a metric."""
+        bounded = self.bounded(M)
+        if self.law.is_off:
+            return Growth(metric=bounded, rounds=0, updates=0, converged=True)
+        for _ in range(MAX_REPEATS):
+            growth = grade_on(self.graph, self.mesh.points, bounded, self.law)
+            # An intersection of metrics within the bound of anisotropy can exceed it. Raising
+            # the small eigenvalues again asks for gradation again; both only refine.
+            bounded = clipped(growth.metric, None, None, self.a_max)
+            if np.allclose(bounded, growth.metric, rtol=TOLERANCE, atol=0.0):
+                break
+        # the smallest size has the last word: what is not resolved there is not graded either
+        return replace(growth, metric=clipped(bounded, self.h_min, None, self.a_max))
+
+    def complexity(self, M: Array) -> float:
+        """Complexity of a checked metric."""
+        return integral_of_exponential(self.mesh.cells, self.volumes, 0.5 * log_determinant(M))
+
+    def stage(self, name: str, M: Array, remark: str = "") -> Stage:
+        """Return the line of the ledger for a metric."""
+        return Stage(name=name, complexity=self.complexity(M), remark=remark)
+
+
+def finishing_on(mesh: MeshLike, options: MetricOptions) -> Finishing:
+    """Prepare the bounds and the gradation that the options ask for on a mesh."""
+    n, d = mesh.points.shape
+    h_max = diameter(mesh) if options.h_max is None else options.h_max
+    low, high, ratio = check_bounds(
+        n, h_min=options.h_min, h_max=h_max, a_max=options.a_max, points=mesh.points
+    )
+    assert high is not None  # h_max always has a value
+    return Finishing(
+        mesh=mesh,
+        graph=wide_graph(mesh),
+        volumes=cell_volumes(mesh),
+        h_min=low,
+        h_max=high,
+        a_max=ratio,
+        law=options.growth_law(d),
+    )

@@ -1,0 +1,1 @@
+"""The methods of recovery, what they share, and the choice between them."""

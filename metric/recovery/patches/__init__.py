@@ -1,0 +1,1 @@
+"""Polynomials fitted over patches of samples, and the noise in them."""

@@ -1,0 +1,1 @@
+"""Where values live: the cells of a mesh that is cut open, and the spaces on them."""

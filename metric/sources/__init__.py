@@ -1,0 +1,1 @@
+"""Metrics that come from elsewhere than fields: sizes, boundaries, goals, indicators."""

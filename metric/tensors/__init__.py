@@ -1,0 +1,1 @@
+"""Metrics as fields of tensors: checks at the door, combinations, functions, components."""
