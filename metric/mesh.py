@@ -7,7 +7,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from .kernels.algebra import norms
+from .vectors import norms
 
 Array = NDArray[np.float64]
 

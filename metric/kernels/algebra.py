@@ -32,11 +32,6 @@ def eigenvalues(T: Array) -> Array:
     return spectra(T)[0]
 
 
-def norms(v: Array) -> Array:
-    """Euclidean norms (...,) of vectors (..., d)."""
-    return np.asarray(np.sqrt((v * v).sum(axis=-1)))
-
-
 def spectral(T: Array, function: Callable[[Array], Array]) -> Array:
     """Return f(T): `function` applied to the eigenvalues (n, d) of `T`."""
     values, vectors = eigh(T)

@@ -8,7 +8,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import determinant, eigh, lower_factor, norms
+from ..vectors import norms
+from .algebra import determinant, eigh, lower_factor
 from .elementary import log
 from .graph import VertexGraph
 from .simultaneous_reduction import intersection

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from ..kernels.algebra import eigh, norms
+from ..kernels.algebra import eigh
 from ..kernels.elementary import angle_of, cosine
 from ..kernels.spectra import product
+from ..vectors import norms
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int32]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..kernels.algebra import norms
+from ..vectors import norms
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..kernels.algebra import norms
 from ..kernels.elementary import log
 from ..laws.gradation import GrowthLaw
 from ..mesh import MeshLike, diameter
+from ..vectors import norms
 from .distance import distance_to_facets
 
 Array = NDArray[np.float64]
