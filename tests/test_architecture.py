@@ -2,6 +2,7 @@
 
 import ast
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,31 @@ APART = [("plane", "surface"), ("plane", "volume")]
 ROOMS_OF_A_MESHER = [{"geometry"}, {"mesh"}, {"passes", "stars"}]
 
 MADE_BY_COMMANDS = {"anistar-demo", "anistar-demo-3d", "build", "dist"}
+
+# The rooms of the package from the ground up, a line per storey: a room imports from itself and
+# from the storeys before its own. `__init__` and `__main__` are above all.
+PACKAGE_ROOMS = [
+    {"arguments", "errors", "memory", "metric", "processes", "telling"},
+    {"atomic", "core_errors", "meshes"},
+    {"formats", "report"},
+    {"judging", "transfer"},
+    {"pictures", "remeshing"},
+    {"loops"},
+    {"adapters", "runs"},
+    {"demo"},
+    {"cli"},
+]
+METRIC_ROOMS = [
+    {"vectors"},
+    {"mesh"},
+    {"kernels"},
+    {"tensors"},
+    {"laws", "recovery"},
+    {"pipeline", "sources"},
+]
+
+# So many modules can be looked over at once.
+MODULES_SIDE_BY_SIDE = 14
 
 # The demo is an example that ships inside the package; it solves with scikit-fem.
 DEMO_PROBLEM = "anistar.demo.problem"
@@ -141,6 +167,34 @@ def test_only_adapters_the_demo_problem_and_the_diagnosis_import_adapters():
 
 def test_modules_import_each_other_without_circles():
     assert in_circles({name: {module_of(other) for other in ALL[name]} for name in ALL}) == set()
+
+
+@pytest.mark.parametrize(
+    ("package", "storeys"), [("anistar", PACKAGE_ROOMS), ("anistar.metric", METRIC_ROOMS)]
+)
+def test_rooms_import_from_those_below_them_only(package, storeys):
+    floor = {room: number for number, rooms in enumerate(storeys) for room in rooms}
+    assert {room_of(name, package) for name in ALL} - {None} == floor.keys()
+    found = {(room_of(one, package), room_of(other, package)) for one in ALL for other in ALL[one]}
+    inside = {(one, other) for one, other in found if {one, other} <= floor.keys() and one != other}
+    assert inside
+    assert sorted(pair for pair in inside if floor[pair[1]] >= floor[pair[0]]) == []
+
+
+def room_of(name, package):
+    """Return the module or folder of a package that a name is in; None for what is above them."""
+    if not name.startswith(package + "."):
+        return None
+    room = name.removeprefix(package + ".").partition(".")[0]
+    return None if room == "__main__" else room
+
+
+@pytest.mark.parametrize("top", [PACKAGE, ROOT / "metric"], ids=lambda path: path.name)
+def test_no_folder_has_more_modules_than_can_be_looked_over(top):
+    side_by_side = Counter(path.parent for path in modules(top) if path.name != "__init__.py")
+    assert side_by_side
+    crowded = {room: n for room, n in side_by_side.items() if n > MODULES_SIDE_BY_SIDE}
+    assert crowded == {}
 
 
 def in_circles(graph):
