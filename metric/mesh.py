@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Floats, Ints
 from .vectors import norms
-
-Array = NDArray[np.float64]
 
 
 @runtime_checkable
@@ -17,27 +15,27 @@ class MeshLike(Protocol):
     """A simplicial mesh as arrays; rows are entities."""
 
     @property
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Floats:
         """Coordinates (n, d)."""
 
     @property
-    def cells(self) -> NDArray[np.int32]:
+    def cells(self) -> Ints:
         """Vertices of the cells (m, d + 1), positively oriented."""
 
     @property
-    def cell_tags(self) -> NDArray[np.int32]:
+    def cell_tags(self) -> Ints:
         """Region of each cell (m,)."""
 
     @property
-    def facets(self) -> NDArray[np.int32]:
+    def facets(self) -> Ints:
         """Boundary and interface facets (k, d)."""
 
     @property
-    def facet_tags(self) -> NDArray[np.int32]:
+    def facet_tags(self) -> Ints:
         """Tag of each facet (k,)."""
 
 
-def cell_volumes(mesh: MeshLike) -> Array:
+def cell_volumes(mesh: MeshLike) -> Floats:
     """Area or volume (m,) of the cells."""
     origin = mesh.points[mesh.cells[:, 0]]
     a = mesh.points[mesh.cells[:, 1]] - origin
@@ -48,7 +46,7 @@ def cell_volumes(mesh: MeshLike) -> Array:
     return np.asarray(np.abs(np.einsum("mi,mi->m", np.cross(a, b), c)) / 6.0)
 
 
-def point_volumes(mesh: MeshLike, volumes: Array) -> Array:
+def point_volumes(mesh: MeshLike, volumes: Floats) -> Floats:
     """Lumped mass (n,): each cell gives its volume to its vertices in equal parts."""
     corners = mesh.cells.shape[1]
     share = np.repeat(volumes / corners, corners)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .arrays import Floats
 
 
-def norms(v: Array) -> Array:
+def norms(v: Floats) -> Floats:
     """Euclidean norms (...,) of vectors (..., d)."""
     return np.asarray(np.sqrt((v * v).sum(axis=-1)))

@@ -37,7 +37,8 @@ MADE_BY_COMMANDS = {"anistar-demo", "anistar-demo-3d", "build", "dist"}
 # from the storeys before its own. `__init__` and `__main__` are above all.
 PACKAGE_ROOMS = [
     {"arguments", "errors", "memory", "metric", "processes", "telling"},
-    {"atomic", "core_errors", "meshes"},
+    {"arrays", "atomic", "core_errors"},
+    {"meshes"},
     {"formats", "report"},
     {"judging", "transfer"},
     {"pictures", "remeshing"},
@@ -47,6 +48,7 @@ PACKAGE_ROOMS = [
     {"cli"},
 ]
 METRIC_ROOMS = [
+    {"arrays"},
     {"vectors"},
     {"mesh"},
     {"kernels"},

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..mesh import MeshLike
 from . import compiled, growth
 from . import graph as graphs
 from .graph import VertexGraph
 from .growth import Growth
 
-Array = NDArray[np.float64]
-
 
 def grade(
-    points: Array,
-    metric: Array,
+    points: Floats,
+    metric: Floats,
     graph: VertexGraph,
     *,
     model: str,

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ..arrays import Ints
 from ..mesh import MeshLike
-
-Index = NDArray[np.int32]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,8 +24,8 @@ class VertexGraph:
         Indices of points.
     """
 
-    offsets: Index
-    neighbours: Index
+    offsets: Ints
+    neighbours: Ints
 
     @property
     def n_points(self) -> int:
@@ -35,7 +33,7 @@ class VertexGraph:
         return len(self.offsets) - 1
 
     @property
-    def sources(self) -> Index:
+    def sources(self) -> Ints:
         """The vertex (k,) that each entry of `neighbours` belongs to."""
         counts = np.diff(self.offsets)
         return np.repeat(np.arange(self.n_points, dtype=np.int32), counts)
@@ -48,7 +46,7 @@ class VertexGraph:
         )
 
 
-def mesh_edges(mesh: MeshLike) -> Index:
+def mesh_edges(mesh: MeshLike) -> Ints:
     """Every edge of the mesh once, (e, 2), smaller index first, sorted."""
     graph = edge_graph(mesh)
     sources = graph.sources
@@ -61,7 +59,7 @@ def edge_graph(mesh: MeshLike) -> VertexGraph:
     return pair_graph(len(mesh.points), mesh.cells)
 
 
-def pair_graph(n_points: int, cells: Index) -> VertexGraph:
+def pair_graph(n_points: int, cells: Ints) -> VertexGraph:
     """Return the graph of the edges of some cells among `n_points` points."""
     return _graph(n_points, _edge_pairs(cells))
 
@@ -76,11 +74,11 @@ def wide_graph(mesh: MeshLike) -> VertexGraph:
     return _graph(len(mesh.points), np.concatenate(pairs))
 
 
-def _edge_pairs(cells: Index) -> Index:
+def _edge_pairs(cells: Ints) -> Ints:
     return np.concatenate([cells[:, list(ij)] for ij in combinations(range(cells.shape[1]), 2)])
 
 
-def _opposite_pairs(cells: Index, n_points: int) -> Index:
+def _opposite_pairs(cells: Ints, n_points: int) -> Ints:
     corners = range(cells.shape[1])
     facets = np.concatenate([np.delete(cells, i, axis=1) for i in corners])
     apex = np.concatenate([cells[:, i] for i in corners])
@@ -98,7 +96,7 @@ def _opposite_pairs(cells: Index, n_points: int) -> Index:
     return np.stack([apex[order[first]], apex[order[first + 1]]], axis=1)
 
 
-def _graph(n_points: int, pairs: Index) -> VertexGraph:
+def _graph(n_points: int, pairs: Ints) -> VertexGraph:
     rows = np.concatenate([pairs[:, 0], pairs[:, 1]])
     columns = np.concatenate([pairs[:, 1], pairs[:, 0]])
     data = np.ones(len(rows), dtype=np.int8)

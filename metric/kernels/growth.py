@@ -8,14 +8,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Floats, Ints, Longs
 from ..vectors import norms
 from .algebra import determinant, eigh, lower_factor
 from .elementary import log
 from .graph import VertexGraph
 from .simultaneous_reduction import intersection
 from .spectra import compose
-
-Array = NDArray[np.float64]
 
 BUCKETS_PER_OCTAVE = 2.0
 """Buckets of the queue per factor 2 of the determinant, as in the core."""
@@ -52,15 +51,15 @@ class Growth:
         False when the bound on the rounds stopped it.
     """
 
-    metric: Array
+    metric: Floats
     rounds: int
     updates: int
     converged: bool
 
 
 def grade(
-    points: Array,
-    metric: Array,
+    points: Floats,
+    metric: Floats,
     graph: VertexGraph,
     *,
     model: str,
@@ -98,7 +97,7 @@ def grade(
     return Growth(metric=M, rounds=rounds, updates=updates, converged=True)
 
 
-def _raise(M: Array, q: NDArray[np.int32], requests: Array, tolerance: float) -> NDArray[np.int32]:
+def _raise(M: Floats, q: Ints, requests: Floats, tolerance: float) -> Ints:
     """Raise the metrics of some vertices in place; return those that grew denser.
 
     Round-off eats what is added far below the largest eigenvalue: the same would be asked again
@@ -117,14 +116,14 @@ def _raise(M: Array, q: NDArray[np.int32], requests: Array, tolerance: float) ->
 
 
 def grown(
-    values: Array,
-    vectors: Array,
-    v: Array,
+    values: Floats,
+    vectors: Floats,
+    v: Floats,
     *,
     model: str,
     log_factor: float,
     max_distortion: float = np.inf,
-) -> Array:
+) -> Floats:
     """Eigenvalues (k, d) of what metrics of the given spectra ask at the ends of edges `v`."""
     values = np.maximum(values, 0.0)  # round-off may make the smallest negative
     along = np.einsum("kij,ki->kj", vectors, v)
@@ -136,43 +135,41 @@ def grown(
 
 
 def _model_growth(
-    values: Array, v: Array, metric_length: Array, model: str, log_factor: float
-) -> Array | float:
+    values: Floats, v: Floats, metric_length: Floats, model: str, log_factor: float
+) -> Floats | float:
     """Growth of the sizes over the edges `v`, for each eigenvalue (k, d) or for all (k, 1)."""
     if model == "none":
         return np.inf
-    uniform: Array = 1.0 + metric_length * log_factor
+    uniform: Floats = 1.0 + metric_length * log_factor
     if model == "metric":
         return uniform
     length = norms(v)[:, None]
-    physical: Array = 1.0 + np.sqrt(values) * length * log_factor
+    physical: Floats = 1.0 + np.sqrt(values) * length * log_factor
     if model == "physical":
         return physical
-    mixed: Array = uniform * np.sqrt(np.sqrt(np.sqrt(physical / uniform)))
+    mixed: Floats = uniform * np.sqrt(np.sqrt(np.sqrt(physical / uniform)))
     return mixed
 
 
-def _density(M: Array) -> Array:
+def _density(M: Floats) -> Floats:
     """Order of the queue (n,), positive even where round-off eats the determinant."""
     return np.maximum(determinant(M), np.finfo(np.float64).tiny)
 
 
-def _buckets(M: Array, densest: float) -> NDArray[np.int64]:
+def _buckets(M: Floats, densest: float) -> Longs:
     """Bucket of the queue for each metric, the densest first."""
     octaves = log(densest / _density(M)) * LOG2_E
     shifted = np.clip(octaves * BUCKETS_PER_OCTAVE + BUCKET_SHIFT, 0.0, LAST_BUCKET)
     return np.asarray(shifted.astype(np.int64))
 
 
-def _order(points: Array, M: Array) -> NDArray[np.intp]:
+def _order(points: Floats, M: Floats) -> NDArray[np.intp]:
     """Order of a front: the densest first, and equally dense ones by their points."""
     density = np.rint(log(_density(M)) * LOG_STEPS)
     return np.lexsort((*points.T[::-1], -density))
 
 
-def _edges_from(
-    front: NDArray[np.intp], graph: VertexGraph
-) -> tuple[NDArray[np.intp], NDArray[np.int32]]:
+def _edges_from(front: NDArray[np.intp], graph: VertexGraph) -> tuple[NDArray[np.intp], Ints]:
     """Edges that leave the vertices of `front`: the position in it, and the other end."""
     counts = np.diff(graph.offsets)[front]
     at = np.repeat(np.arange(len(front)), counts)
@@ -180,7 +177,7 @@ def _edges_from(
     return at, graph.neighbours[graph.offsets[front][at] + within]
 
 
-def _turns(q: NDArray[np.int32]) -> list[NDArray[np.intp]]:
+def _turns(q: Ints) -> list[NDArray[np.intp]]:
     """Split the requests into turns in which each vertex of `q` appears at most once."""
     order = np.argsort(q, kind="stable")
     first = np.searchsorted(q[order], q[order], side="left")

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arrays import Floats
 from . import compiled, simultaneous_reduction
 
-Array = NDArray[np.float64]
 
-
-def intersect(M: Array, N: Array) -> Array:
-    """Intersect checked metrics (n, d, d), see `combination.intersected`."""
+def intersect(M: Floats, N: Floats) -> Floats:
+    """Intersect checked metrics (n, d, d), see `tensors.combination.intersected`."""
     if compiled.core is None:
         return simultaneous_reduction.intersect(M, N)
-    result: Array = compiled.core.intersect(M, N)
+    result: Floats = compiled.core.intersect(M, N)
     return result

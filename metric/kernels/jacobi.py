@@ -12,9 +12,8 @@ References
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Floats
 
 MAX_SWEEPS = 24
 """Of Jacobi rotations; 4 to 6 are needed, with quadratic convergence at the end."""
@@ -26,7 +25,7 @@ SMALLEST_SQUARE = 1e-300
 """The same beside a zero, where the largest entry is about one."""
 
 
-def spectra(T: Array) -> tuple[Array, Array]:
+def spectra(T: Floats) -> tuple[Floats, Floats]:
     """Eigenvalues (n, d), increasing, and eigenvectors (n, d, d) in columns of symmetric `T`.
 
     The lower triangle of `T` is read.
@@ -50,7 +49,7 @@ def spectra(T: Array) -> tuple[Array, Array]:
     )
 
 
-def _rotate(A: Array, V: Array, p: int, q: int) -> bool:
+def _rotate(A: Floats, V: Floats, p: int, q: int) -> bool:
     """Make the entries (p, q) of `A` zero in place, gather the rotations in `V`; whether any."""
     a, b, c = A[:, p, p], A[:, p, q], A[:, q, q]
     negligible = np.maximum(NEGLIGIBLE_SQUARE * np.abs(a * c), SMALLEST_SQUARE)
@@ -76,7 +75,7 @@ def _rotate(A: Array, V: Array, p: int, q: int) -> bool:
     return True
 
 
-def compose(values: Array, vectors: Array) -> Array:
+def compose(values: Floats, vectors: Floats) -> Floats:
     """Return the tensors ``vectors diag(values) vectors^T`` (n, d, d), exactly symmetric."""
     T = np.empty_like(vectors)
     d = values.shape[-1]

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..mesh import MeshLike
 from . import compiled
 from .graph import mesh_edges
 
-Array = NDArray[np.float64]
 
-
-def pieces(mesh: MeshLike, M: Array) -> tuple[Array, Array]:
+def pieces(mesh: MeshLike, M: Floats) -> tuple[Floats, Floats]:
     """Return how many the longest edge of a point has, and the fewest among its neighbours.
 
     Both have shape (n,) and are at least 1; the metric (n, d, d) of each end counts its own.
@@ -27,7 +25,7 @@ def pieces(mesh: MeshLike, M: Array) -> tuple[Array, Array]:
     return most, fewest
 
 
-def _pieces(mesh: MeshLike, M: Array) -> tuple[Array, Array]:
+def _pieces(mesh: MeshLike, M: Floats) -> tuple[Floats, Floats]:
     a, b = mesh_edges(mesh).T
     v = mesh.points[b] - mesh.points[a]
     most = np.ones(len(mesh.points))

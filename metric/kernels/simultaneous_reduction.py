@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Bools, Floats
 from . import jacobi
 from .algebra import congruent, lower_factor
 from .spectra import compose, product
 
-Array = NDArray[np.float64]
 
-
-def intersect(M: Array, N: Array) -> Array:
+def intersect(M: Floats, N: Floats) -> Floats:
     """Intersect checked metrics (n, d, d): at least as fine as both, to round-off.
 
     A second pass takes back what the first rounds off where sizes differ by many orders of
@@ -23,7 +21,7 @@ def intersect(M: Array, N: Array) -> Array:
     return once
 
 
-def intersection(M: Array, N: Array, tolerance: float) -> tuple[Array, NDArray[np.bool_]]:
+def intersection(M: Floats, N: Floats, tolerance: float) -> tuple[Floats, Bools]:
     """Intersect checked metrics; leave `M` where `N` exceeds it by a factor < 1 + `tolerance`.
 
     Returns the metrics (n, d, d) and a mask (n,) of those that changed. What is added to `M`

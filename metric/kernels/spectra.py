@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from . import compiled, jacobi
 
-Array = NDArray[np.float64]
 
-
-def spectra(T: Array) -> tuple[Array, Array]:
+def spectra(T: Floats) -> tuple[Floats, Floats]:
     """Eigenvalues (n, d), increasing, and eigenvectors (n, d, d) in columns, see `jacobi`."""
     if compiled.core is None or T.shape[-1] not in (2, 3):
         return jacobi.spectra(T)
@@ -18,17 +16,17 @@ def spectra(T: Array) -> tuple[Array, Array]:
     return values, vectors
 
 
-def compose(values: Array, vectors: Array) -> Array:
+def compose(values: Floats, vectors: Floats) -> Floats:
     """Return the tensors ``vectors diag(values) vectors^T`` (n, d, d), exactly symmetric."""
     if compiled.core is None or vectors.shape[-1] not in (2, 3):
         return jacobi.compose(values, vectors)
-    tensors: Array = compiled.core.compose(
+    tensors: Floats = compiled.core.compose(
         np.ascontiguousarray(values), np.ascontiguousarray(vectors)
     )
     return tensors
 
 
-def product(A: Array, B: Array) -> Array:
+def product(A: Floats, B: Floats) -> Floats:
     """Return the products ``A B`` of stacked matrices (..., i, j) and (..., j, k)."""
     if compiled.core is None or not A.shape[-2:] == B.shape[-2:] in ((2, 2), (3, 3)):
         return np.asarray(np.einsum("...ij,...jk->...ik", A, B))

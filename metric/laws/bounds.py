@@ -5,27 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..kernels.algebra import eigh
 from ..kernels.spectra import compose
 from ..tensors.checks import check_metric, check_result
 
-Array = NDArray[np.float64]
-
-Bound = ArrayLike | Callable[[Array], ArrayLike] | None
+Bound = ArrayLike | Callable[[Floats], ArrayLike] | None
 """A number, one value per point, or a function of the points (n, d) that returns them."""
 
 
 def bounded(
-    M: Array,
+    M: Floats,
     *,
     h_min: Bound = None,
     h_max: Bound = None,
     a_max: Bound = None,
-    points: Array | None = None,
+    points: Floats | None = None,
     restrict_anisotropy_first: bool = False,
-) -> Array:
+) -> Floats:
     """Bound the sizes, and the ratio of the largest to the smallest size.
 
     Parameters
@@ -63,8 +62,8 @@ def bounded(
 
 
 def check_bounds(
-    n: int, *, h_min: Bound, h_max: Bound, a_max: Bound, points: Array | None = None
-) -> tuple[Array | None, Array | None, Array | None]:
+    n: int, *, h_min: Bound, h_max: Bound, a_max: Bound, points: Floats | None = None
+) -> tuple[Floats | None, Floats | None, Floats | None]:
     """Return the bounds as columns (n, 1) or (1, 1), or raise ValueError."""
     low = _column("h_min", _at(points, "h_min", h_min), n, 0.0)
     high = _column("h_max", _at(points, "h_max", h_max), n, 0.0)
@@ -79,7 +78,7 @@ def check_bounds(
     return low, high, ratio
 
 
-def clipped(M: Array, h_min: Array | None, h_max: Array | None, a_max: Array | None) -> Array:
+def clipped(M: Floats, h_min: Floats | None, h_max: Floats | None, a_max: Floats | None) -> Floats:
     """Bound a checked metric by checked columns."""
     if h_min is None and h_max is None and a_max is None:
         return M
@@ -93,7 +92,7 @@ def clipped(M: Array, h_min: Array | None, h_max: Array | None, a_max: Array | N
     return compose(values, vectors)
 
 
-def _at(points: Array | None, name: str, bound: Bound) -> ArrayLike | None:
+def _at(points: Floats | None, name: str, bound: Bound) -> ArrayLike | None:
     """Return the values of a bound that may be a function of the points."""
     if not callable(bound):
         return bound
@@ -105,7 +104,7 @@ def _at(points: Array | None, name: str, bound: Bound) -> ArrayLike | None:
     return values
 
 
-def _column(name: str, bound: ArrayLike | None, n: int, least: float) -> Array | None:
+def _column(name: str, bound: ArrayLike | None, n: int, least: float) -> Floats | None:
     if bound is None:
         return None
     column = np.asarray(bound, dtype=np.float64).reshape(-1, 1)

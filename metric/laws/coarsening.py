@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.elementary import power
 from ..kernels.intersection import intersect
 from ..mesh import MeshLike
@@ -13,10 +13,8 @@ from ..tensors.combination import check_step
 from .complexity import complexity
 from .implied import implied_metric
 
-Array = NDArray[np.float64]
 
-
-def limited_coarsening(mesh: MeshLike, M: Array, ratio: float = 2.0) -> Array:
+def limited_coarsening(mesh: MeshLike, M: Floats, ratio: float = 2.0) -> Floats:
     """Refine a metric where it asks for sizes much larger than those of the mesh.
 
     A recovered Hessian that is too small somewhere makes huge cells there, on which nothing can
@@ -52,7 +50,7 @@ def limited_coarsening(mesh: MeshLike, M: Array, ratio: float = 2.0) -> Array:
     return check_result(coarsening_limited(mesh, metric, ratio), "the limit of coarsening")
 
 
-def coarsening_limited(mesh: MeshLike, M: Array, ratio: float) -> Array:
+def coarsening_limited(mesh: MeshLike, M: Floats, ratio: float) -> Floats:
     """Limit the coarsening of a checked metric by a checked ratio."""
     d = M.shape[-1]
     own = implied_metric(mesh)

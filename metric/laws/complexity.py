@@ -5,14 +5,12 @@ from __future__ import annotations
 from math import factorial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats, Ints
 from ..kernels.algebra import log_determinant
 from ..kernels.elementary import exp
 from ..mesh import MeshLike, cell_volumes
 from ..tensors.checks import check_metric_on
-
-Array = NDArray[np.float64]
 
 ELEMENTS_PER_COMPLEXITY = {2: 2.309, 3: 8.49}
 """Unit simplices per unit of complexity: 1 / (sqrt(3) / 4) and 1 / (sqrt(2) / 12)."""
@@ -27,7 +25,7 @@ SERIES_ORDER = 12
 """With exponents within 2/3 of their mean the remainder is below .67**13 / 13! = 1e-12."""
 
 
-def complexity(mesh: MeshLike, M: Array) -> float:
+def complexity(mesh: MeshLike, M: Floats) -> float:
     """Complexity ``int sqrt(det M) dx`` of the log-Euclidean interpolant of `M`.
 
     In a cell the logarithm of the interpolated metric is linear, so ``sqrt(det M)`` is the
@@ -61,7 +59,7 @@ def complexity(mesh: MeshLike, M: Array) -> float:
     return integral_of_exponential(mesh.cells, cell_volumes(mesh), 0.5 * log_determinant(M))
 
 
-def integral_of_exponential(cells: NDArray[np.int32], volumes: Array, exponent: Array) -> float:
+def integral_of_exponential(cells: Ints, volumes: Floats, exponent: Floats) -> float:
     """Exact integral of exp of the P1 function with point values `exponent` (n,)."""
     values = np.sort(exponent[cells], axis=1)
     top = values.max(initial=-np.inf)
@@ -71,7 +69,7 @@ def integral_of_exponential(cells: NDArray[np.int32], volumes: Array, exponent: 
     return float(exp(float(top)) * factor * (volumes * exp_divided_difference(values - top)).sum())
 
 
-def exp_divided_difference(nodes: Array) -> Array:
+def exp_divided_difference(nodes: Floats) -> Floats:
     """Divided difference exp[x_0, ..., x_k] for rows of `nodes` (m, k + 1), increasing."""
     if nodes.shape[1] == 1:
         return exp(nodes[:, 0])
@@ -86,7 +84,7 @@ def exp_divided_difference(nodes: Array) -> Array:
     return result
 
 
-def _series(nodes: Array) -> Array:
+def _series(nodes: Floats) -> Floats:
     """Sum of h_j(x - mean) / (j + k)!, h_j the complete homogeneous polynomials."""
     mean = nodes.mean(axis=1)
     columns = list((nodes - mean[:, None]).T)

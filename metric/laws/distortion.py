@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.algebra import congruent, eigenvalues, lower_factor
 from ..kernels.elementary import log
 from ..kernels.graph import mesh_edges
 from ..mesh import MeshLike
 from ..tensors.checks import check_metric_on
 
-Array = NDArray[np.float64]
-
 CANCELLED = 1e-10
 """An eigenvalue below this fraction of the largest is round-off for the most part."""
 
 
-def distortion(mesh: MeshLike, M: Array) -> Array:
+def distortion(mesh: MeshLike, M: Floats) -> Floats:
     """Logarithm of the distortion of `M` over one unit of metric length, for each edge.
 
     The distortion of two metrics is the largest ratio by which they see the length of one
@@ -57,7 +55,7 @@ def distortion(mesh: MeshLike, M: Array) -> Array:
     return np.asarray(gamma / edge_lengths(mesh.points[q] - mesh.points[p], M[p], M[q]))
 
 
-def edge_lengths(v: Array, start: Array, end: Array) -> Array:
+def edge_lengths(v: Floats, start: Floats, end: Floats) -> Floats:
     """Metric lengths (e,) of edges `v` with the metrics at their ends, for a geometric law.
 
     ``(a - b) / ln(a / b)``, a and b the lengths in the two metrics.

@@ -6,14 +6,12 @@ from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.algebra import congruent, lower_factor
 from ..kernels.elementary import power
 from ..mesh import MeshLike, cell_volumes, point_volumes
 from ..tensors.checks import check_metric, check_tensors
-
-Array = NDArray[np.float64]
 
 MEAN_SQUARE = {2: (7.0 / 1920.0, 2.0 / 1920.0), 3: (8.0 / 3360.0, 2.0 / 3360.0)}
 """Weights of (tr S)^2 and tr S^2 in the mean square error of a perfect unit simplex."""
@@ -26,7 +24,7 @@ QUADRATURE_CELLS = 30
 """Divisions of an edge of the simplex in the quadrature of Lp norms; 3 digits."""
 
 
-def predicted_error(mesh: MeshLike, M: Array, H: Array, *, p: float = 2.0) -> float:
+def predicted_error(mesh: MeshLike, M: Floats, H: Floats, *, p: float = 2.0) -> float:
     """Predict the Lp norm of the P1 interpolation error on a unit mesh of `M`.
 
     On a perfect unit simplex of M, averaged over its orientation, a quadratic with Hessian H
@@ -76,7 +74,7 @@ def predicted_error(mesh: MeshLike, M: Array, H: Array, *, p: float = 2.0) -> fl
     return largest * power(float((mass * power(local / largest, p)).sum()), 1.0 / p)
 
 
-def local_error(M: Array, H: Array) -> Array:
+def local_error(M: Floats, H: Floats) -> Floats:
     """Root of the mean square error (n,) on unit simplices of checked `M`."""
     d = M.shape[-1]
     S = congruent(lower_factor(M), H)
@@ -108,6 +106,6 @@ def _power_mean(p: float, d: int) -> float:
     return largest * power(float(np.mean(power(shape / largest, p))), 1.0 / p)
 
 
-def _shape(barycentric: Array) -> Array:
+def _shape(barycentric: Floats) -> Floats:
     pairs = combinations(range(barycentric.shape[1]), 2)
     return np.asarray(sum(barycentric[:, i] * barycentric[:, j] for i, j in pairs))

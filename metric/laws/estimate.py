@@ -6,16 +6,14 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats, Ints
 from ..kernels.algebra import determinant
 from ..kernels.graph import mesh_edges
 from ..mesh import MeshLike, cell_volumes, point_volumes
 from ..tensors.checks import check_metric_on
 from .complexity import REAL_ELEMENTS_PER_COMPLEXITY, complexity
 from .distortion import distortion, edge_lengths
-
-Array = NDArray[np.float64]
 
 ELEMENTS_PER_DISTORTION = {2: 0.175, 3: 0.2}
 """Share of elements that a mean distortion of 1 adds, measured: edges that look unit from one
@@ -51,7 +49,7 @@ class Estimate:
         return asdict(self)
 
 
-def estimate(mesh: MeshLike, M: Array) -> Estimate:
+def estimate(mesh: MeshLike, M: Floats) -> Estimate:
     """Estimate the mesh that `remesh` will make of a metric, without making it.
 
     A mesh of perfect unit simplices has 2.309 C triangles or 8.49 C tetrahedra, C the
@@ -79,7 +77,7 @@ def estimate(mesh: MeshLike, M: Array) -> Estimate:
     return estimate_with(mesh, M, distortion(mesh, M))
 
 
-def estimate_with(mesh: MeshLike, M: Array, distortions: Array) -> Estimate:
+def estimate_with(mesh: MeshLike, M: Floats, distortions: Floats) -> Estimate:
     """Estimate the mesh of a checked metric whose distortion is known, see `estimate`."""
     n, d = mesh.points.shape
     C = complexity(mesh, M)
@@ -93,7 +91,7 @@ def estimate_with(mesh: MeshLike, M: Array, distortions: Array) -> Estimate:
     return Estimate(vertices=vertices, elements=elements, memory=vertices * BYTES_PER_VERTEX[d])
 
 
-def elements_per_complexity(mesh: MeshLike, M: Array, distortions: Array | None = None) -> float:
+def elements_per_complexity(mesh: MeshLike, M: Floats, distortions: Floats | None = None) -> float:
     """Return the expected elements of a unit mesh over the complexity of a checked metric.
 
     `distortions` are those of the metric, where they are known.
@@ -105,7 +103,7 @@ def elements_per_complexity(mesh: MeshLike, M: Array, distortions: Array | None 
     )
 
 
-def mean_distortion(mesh: MeshLike, M: Array, distortions: Array) -> float:
+def mean_distortion(mesh: MeshLike, M: Floats, distortions: Floats) -> float:
     """Mean of the distortion over the edges, each weighted by the unit edges that it stands for."""
     edges = mesh_edges(mesh)
     density = point_volumes(mesh, cell_volumes(mesh)) * np.sqrt(determinant(M))
@@ -113,7 +111,7 @@ def mean_distortion(mesh: MeshLike, M: Array, distortions: Array) -> float:
     return float(np.average(distortions, weights=share[edges].sum(axis=1)))
 
 
-def _boundary(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+def _boundary(triangles: Ints) -> Ints:
     """Edges (k, 2) that one triangle has alone."""
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     found, counts = np.unique(edges, axis=0, return_counts=True)

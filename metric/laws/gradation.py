@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.elementary import log
 from ..kernels.gradation import grade, wide_graph
 from ..kernels.graph import VertexGraph
 from ..kernels.growth import Growth
 from ..mesh import MeshLike
 from ..tensors.checks import check_metric_on, check_result
-
-Array = NDArray[np.float64]
 
 logger = logging.getLogger(__name__)
 
@@ -69,13 +67,13 @@ class GrowthLaw:
 
 def graded(
     mesh: MeshLike,
-    M: Array,
+    M: Floats,
     *,
     factor: float | None = 1.5,
     model: str = "physical",
     max_distortion: float | None = None,
     tolerance: float = TOLERANCE,
-) -> Array:
+) -> Floats:
     """Limit how fast a metric changes, by making it finer where it must be.
 
     For every edge pq of the mesh, and every pair of vertices opposite across a facet (a
@@ -144,7 +142,7 @@ def check_tolerance(tolerance: float) -> None:
 
 
 def grade_on(
-    graph: VertexGraph, points: Array, M: Array, law: GrowthLaw, tolerance: float = TOLERANCE
+    graph: VertexGraph, points: Floats, M: Floats, law: GrowthLaw, tolerance: float = TOLERANCE
 ) -> Growth:
     """Grade a checked metric along a graph that is at hand."""
     result = grade(

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.algebra import determinant, exp_metric, log_metric
 from ..kernels.spectra import product
 from ..mesh import MeshLike
 from ..tensors.checks import check_result
-
-Array = NDArray[np.float64]
 
 UNIT_SIMPLEX = {
     2: np.array([[1.0, 0.0], [0.5, math.sqrt(0.75)]]),
@@ -23,7 +21,7 @@ UNIT_SIMPLEX = {
 """Edges from one vertex of the regular simplex of edge length one, in rows."""
 
 
-def implied_metric(mesh: MeshLike) -> Array:
+def implied_metric(mesh: MeshLike) -> Floats:
     """Return the metric of which `mesh` is a unit mesh, as nearly as point values can say.
 
     In each simplex there is exactly one metric in which all edges have length one [1]_; at a
@@ -65,7 +63,7 @@ def implied_metric(mesh: MeshLike) -> Array:
     return check_result(exp_metric(sums / counts[:, None, None]), "the implied metric")
 
 
-def _cell_metrics(mesh: MeshLike) -> Array:
+def _cell_metrics(mesh: MeshLike) -> Floats:
     """Metrics (m, d, d) in which all edges of a cell have length one."""
     d = mesh.points.shape[1]
     edges = mesh.points[mesh.cells[:, 1:]] - mesh.points[mesh.cells[:, :1]]
@@ -76,7 +74,7 @@ def _cell_metrics(mesh: MeshLike) -> Array:
     return product(to_unit, to_unit.transpose(0, 2, 1))
 
 
-def _inverses(edges: Array) -> Array:
+def _inverses(edges: Floats) -> Floats:
     """Inverses (m, d, d) of matrices of edges, by their cofactors."""
     if edges.shape[-1] == 2:
         (a, b), (c, e) = edges.transpose(1, 2, 0)

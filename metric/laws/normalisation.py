@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats, Ints
 from ..kernels.algebra import eigh
 from ..kernels.elementary import exp, log, power
 from ..kernels.spectra import compose
@@ -16,8 +17,6 @@ from ..tensors.checks import MetricError, check_result, check_tensors
 from .bounds import Bound, check_bounds
 from .complexity import integral_of_exponential
 from .error_model import predicted_error
-
-Array = NDArray[np.float64]
 
 FLOOR_STEPS = 8
 """Fixed-point steps for the floor; each gains about a digit, and two are enough."""
@@ -36,13 +35,13 @@ ERROR_TOLERANCE = 1e-4
 
 def normalised(
     mesh: MeshLike,
-    H: Array,
+    H: Floats,
     *,
     target_complexity: float | None = None,
     target_error: float | None = None,
     p: float = 2.0,
     h_max: Bound = None,
-) -> Array:
+) -> Floats:
     """Scale ``|H|`` to the metric that is optimal in the Lp norm [1]_.
 
     ``M = C^(2/d) (int det|H|^(p/(2p+d)))^(-2/d) det|H|^(-1/(2p+d)) |H|``. A change of the
@@ -101,13 +100,13 @@ def normalised(
 
 def normalised_space_time(
     meshes: Sequence[MeshLike],
-    hessians: Sequence[Array],
+    hessians: Sequence[Floats],
     *,
     target_complexity: float,
     time_steps: ArrayLike | None = None,
     p: float = 2.0,
     h_max: Bound = None,
-) -> list[Array]:
+) -> list[Floats]:
     """Distribute one space-time complexity over the metrics of several instants [1]_, [2]_.
 
     With n_i time steps taken on the mesh of instant i, the space-time complexity is
@@ -164,7 +163,7 @@ def normalised_space_time(
     return [check_result(M, f"the normalisation of instant {i}") for i, M in enumerate(metrics)]
 
 
-def check_time_steps(time_steps: ArrayLike | None, k: int) -> Array:
+def check_time_steps(time_steps: ArrayLike | None, k: int) -> Floats:
     """Return the numbers of time steps (k,) of the instants, or raise ValueError."""
     steps = np.ones(k) if time_steps is None else np.asarray(time_steps, dtype=np.float64)
     if steps.shape != (k,):
@@ -191,17 +190,17 @@ def check_p(p: float) -> None:
 class HessianField:
     """The spectrum of |H| on one mesh, what integrals need, and for how many time steps."""
 
-    cells: NDArray[np.int32]
-    volumes: Array
-    mass: Array
-    values: Array
-    vectors: Array
-    size: Array
+    cells: Ints
+    volumes: Floats
+    mass: Floats
+    values: Floats
+    vectors: Floats
+    size: Floats
     steps: float
 
 
 def _field(
-    mesh: MeshLike, H: Array, h_max: Bound, *, steps: float = 1.0, name: str = "Hessian"
+    mesh: MeshLike, H: Floats, h_max: Bound, *, steps: float = 1.0, name: str = "Hessian"
 ) -> HessianField:
     n, d = mesh.points.shape
     values, vectors = _spectra(check_tensors(H, n_points=n, dim=d, name=name))
@@ -222,7 +221,7 @@ def _field(
     )
 
 
-def _spectra(T: Array) -> tuple[Array, Array]:
+def _spectra(T: Floats) -> tuple[Floats, Floats]:
     """Return eigenvalues and eigenvectors of tensors in any unit.
 
     The squares of their entries may leave the range of doubles; the power of two that brings
@@ -233,7 +232,7 @@ def _spectra(T: Array) -> tuple[Array, Array]:
     return np.ldexp(values, exponent), vectors
 
 
-def optimal(fields: Sequence[HessianField], C: float, p: float) -> list[Array]:
+def optimal(fields: Sequence[HessianField], C: float, p: float) -> list[Floats]:
     """Return the metrics of least error whose complexities, times the steps, add up to C."""
     d = fields[0].values.shape[1]
     inner, outer = _exponents(p, d)
@@ -253,8 +252,8 @@ def optimal(fields: Sequence[HessianField], C: float, p: float) -> list[Array]:
 
 
 def _for_error(
-    mesh: MeshLike, H: Array, field: HessianField, target_error: float, p: float
-) -> Array:
+    mesh: MeshLike, H: Floats, field: HessianField, target_error: float, p: float
+) -> Floats:
     """Return the optimal metric with the predicted error, found by its law C^(-2/d)."""
     d = field.values.shape[1]
     coarsest = C = float(field.volumes.sum()) / power(float(field.size.max()), d)
@@ -272,7 +271,7 @@ def _exponents(p: float, d: int) -> tuple[float, float]:
     return 1.0 / (2.0 + d / p), 1.0 / (2.0 * p + d)
 
 
-def _floored(fields: Sequence[HessianField], C: float, p: float) -> list[Array]:
+def _floored(fields: Sequence[HessianField], C: float, p: float) -> list[Floats]:
     """Floor the eigenvalues (n, d) so that regions without features get the size `h_max`.
 
     Where all eigenvalues equal e the metric is K n^(-2/(2p+d)) e^(2p/(2p+d)), so h_max**-2

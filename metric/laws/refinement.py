@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Bools, Floats
 from ..kernels.algebra import congruent, eigenvalues, eigh, lower_factor
 from ..kernels.pieces import pieces
 from ..kernels.spectra import compose, product
@@ -14,8 +14,6 @@ from ..mesh import MeshLike
 from ..tensors.checks import check_metric_on, check_result
 from ..tensors.combination import check_step
 from .implied import implied_metric
-
-Array = NDArray[np.float64]
 
 RESOLVED = 25.0
 """How many times more than at a neighbour a metric may refine at a point and still be believed.
@@ -34,12 +32,12 @@ ROUND_OFF = 64 * float(np.finfo(np.float64).eps)
 class Refinement:
     """A metric (n, d, d) whose refinement was limited, where (n,), and the largest excess."""
 
-    metric: Array
-    is_limited: NDArray[np.bool_]
+    metric: Floats
+    is_limited: Bools
     excess: float
 
 
-def limited_refinement(mesh: MeshLike, M: Array, ratio: float | str = "auto") -> Array:
+def limited_refinement(mesh: MeshLike, M: Floats, ratio: float | str = "auto") -> Floats:
     """Coarsen a metric where the mesh that carries it cannot resolve what it asks for.
 
     An analytic metric with a thin layer, given at the points of a coarse mesh, says nothing
@@ -85,7 +83,7 @@ def check_refinement(name: str, ratio: float | str) -> None:
     check_step(name, ratio)
 
 
-def refinement_limited(mesh: MeshLike, M: Array, ratio: float | str) -> Refinement:
+def refinement_limited(mesh: MeshLike, M: Floats, ratio: float | str) -> Refinement:
     """Limit the refinement of a checked metric by a checked ratio."""
     n = len(mesh.points)
     nowhere = Refinement(metric=M, is_limited=np.zeros(n, dtype=bool), excess=1.0)

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.algebra import absolute, eigh
 from ..kernels.elementary import power
 from ..kernels.graph import VertexGraph
@@ -19,8 +19,6 @@ from ..mesh import MeshLike
 from ..recovery import Samples, hessians_of_fields
 from ..tensors.combination import intersection_of
 from .options import MetricOptions
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,13 +40,13 @@ class FieldHessian:
         How they were recovered, for the ledger.
     """
 
-    components: Array
-    absolute: Array
+    components: Floats
+    absolute: Floats
     unit: float
     scale: float
     remark: str
 
-    def error(self, mesh: MeshLike, M: Array, p: float) -> float:
+    def error(self, mesh: MeshLike, M: Floats, p: float) -> float:
         """Predicted Lp norm of the error on a unit mesh of `M`, over all components."""
         parts = self.components.transpose(1, 0, 2, 3)
         errors = np.array([predicted_error(mesh, M, part, p=p) for part in parts])
@@ -82,7 +80,7 @@ def hessians_of(
     return found
 
 
-def _with_anisotropy(mesh: MeshLike, H: Array, options: MetricOptions) -> Array:
+def _with_anisotropy(mesh: MeshLike, H: Floats, options: MetricOptions) -> Floats:
     """Raise small eigenvalues of `H` (n, k, d, d) by modulus to the largest over a_max**2."""
     n, k, d, _ = H.shape
     _, _, ratio = check_bounds(n, h_min=None, h_max=None, a_max=options.a_max, points=mesh.points)
@@ -94,7 +92,7 @@ def _with_anisotropy(mesh: MeshLike, H: Array, options: MetricOptions) -> Array:
     return compose(lifted, vectors).reshape(H.shape)
 
 
-def _intersected_components(H: Array, rule: str) -> Array:
+def _intersected_components(H: Floats, rule: str) -> Floats:
     """Intersect the |H| of the components of one field (n, k, d, d)."""
     largest = float(np.abs(H).max(initial=0.0))
     if H.shape[1] == 1 or largest == 0.0:

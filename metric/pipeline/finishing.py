@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.algebra import log_determinant
 from ..kernels.gradation import wide_graph
 from ..kernels.graph import VertexGraph
@@ -19,8 +19,6 @@ from ..tensors.checks import check_result
 from .ledger import Stage
 from .options import MetricOptions
 
-Array = NDArray[np.float64]
-
 MAX_REPEATS = 5
 """Of the gradation where the bound of anisotropy changes its result; two are usual."""
 
@@ -31,17 +29,17 @@ class Finishing:
 
     mesh: MeshLike
     graph: VertexGraph
-    volumes: Array
-    h_min: Array | None
-    h_max: Array
-    a_max: Array | None
+    volumes: Floats
+    h_min: Floats | None
+    h_max: Floats
+    a_max: Floats | None
     law: GrowthLaw
 
-    def bounded(self, M: Array) -> Array:
+    def bounded(self, M: Floats) -> Floats:
         """Bound a metric."""
         return check_result(clipped(M, self.h_min, self.h_max, self.a_max), "the bounds")
 
-    def finished(self, M: Array) -> Growth:
+    def finished(self, M: Floats) -> Growth:
         """Bound and grade a metric."""
         bounded = self.bounded(M)
         if self.law.is_off:
@@ -56,11 +54,11 @@ class Finishing:
         # the smallest size has the last word: what is not resolved there is not graded either
         return replace(growth, metric=clipped(bounded, self.h_min, None, self.a_max))
 
-    def complexity(self, M: Array) -> float:
+    def complexity(self, M: Floats) -> float:
         """Complexity of a checked metric."""
         return integral_of_exponential(self.mesh.cells, self.volumes, 0.5 * log_determinant(M))
 
-    def stage(self, name: str, M: Array, remark: str = "") -> Stage:
+    def stage(self, name: str, M: Floats, remark: str = "") -> Stage:
         """Return the line of the ledger for a metric."""
         return Stage(name=name, complexity=self.complexity(M), remark=remark)
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.algebra import absolute
 from ..laws.coarsening import coarsening_limited
 from ..laws.distortion import distortion
@@ -24,14 +24,12 @@ from .options import MetricOptions
 from .scaling import scales_of
 from .target import Aimed, aimed_at
 
-Array = NDArray[np.float64]
-
 logger = logging.getLogger(__name__)
 
 
 def from_fields(
     mesh: MeshLike, fields: Mapping[str, Any], options: MetricOptions
-) -> tuple[Array, Ledger]:
+) -> tuple[Floats, Ledger]:
     """Make the metric whose unit mesh interpolates `fields` best at the target complexity.
 
     The order is: recover the Hessians, take absolute values, intersect the components of each
@@ -92,7 +90,7 @@ def from_fields(
 
 def _normalised_together(
     finishing: Finishing, found: Mapping[str, FieldHessian], options: MetricOptions
-) -> tuple[Array, list[Stage]]:
+) -> tuple[Floats, list[Stage]]:
     """Normalise the fields and intersect them, in the order that the scale asks for."""
     mesh, size = finishing.mesh, finishing.h_max[:, 0]
     d = mesh.points.shape[1]

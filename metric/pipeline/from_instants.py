@@ -8,8 +8,9 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..kernels.algebra import absolute
 from ..kernels.growth import Growth
 from ..laws.coarsening import coarsening_limited
@@ -23,8 +24,6 @@ from .options import MetricOptions
 from .rootfind import COMPLEXITY_TOLERANCE, rescaling
 from .scaling import scales_of
 from .target import missed
-
-Array = NDArray[np.float64]
 
 logger = logging.getLogger(__name__)
 
@@ -71,7 +70,7 @@ def from_instants(
     options: MetricOptions,
     *,
     time_steps: ArrayLike | None = None,
-) -> tuple[list[Array], SpaceTimeLedger]:
+) -> tuple[list[Floats], SpaceTimeLedger]:
     """Make the metrics of several instants that share one space-time complexity.
 
     The order is that of `from_fields`, with `normalised_space_time` in the place of the
@@ -166,15 +165,15 @@ def _recovered(
 def _bases(
     meshes: Sequence[MeshLike],
     found: Sequence[Mapping[str, FieldHessian]],
-    steps: Array,
+    steps: Floats,
     options: MetricOptions,
-) -> list[Array]:
+) -> list[Floats]:
     """Normalise in space and time and intersect the fields, in the order of the scale."""
     target, rule = options.target_complexity, options.intersection_rule
     assert target is not None  # the caller looked
     scaled = [_in_one_unit([instant[name] for instant in found]) for name in found[0]]
 
-    def normalise(hessians: Sequence[Array]) -> list[Array]:
+    def normalise(hessians: Sequence[Floats]) -> list[Floats]:
         return normalised_space_time(
             meshes,
             hessians,
@@ -196,7 +195,7 @@ def _bases(
     return normalise([intersection_of(H, rule) for H in zip(*parts, strict=True)])
 
 
-def _in_one_unit(fields: Sequence[FieldHessian]) -> tuple[list[Array], float]:
+def _in_one_unit(fields: Sequence[FieldHessian]) -> tuple[list[Floats], float]:
     """|H| of one field at all instants in one unit, and that unit over the scale."""
     unit = max(field.unit for field in fields)
     return [field.absolute * (field.unit / unit) for field in fields], unit / fields[0].scale

@@ -7,8 +7,9 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..laws.bounds import check_bounds
 from ..laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY
 from ..laws.gradation import DEFAULT_FACTORS, GrowthLaw
@@ -18,7 +19,7 @@ from ..tensors.combination import check_rule, check_step
 from .aliases import advice, asks_nothing, flattened, our_name, our_value
 from .scaling import Scale, check_scale
 
-Bound = float | NDArray[np.float64] | Callable[[NDArray[np.float64]], ArrayLike] | None
+Bound = float | Floats | Callable[[Floats], ArrayLike] | None
 TARGETS = ("target_complexity", "target_elements", "target_error")
 
 

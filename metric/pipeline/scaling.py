@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..recovery import Samples
 
-Array = NDArray[np.float64]
 Scale = str | float | Mapping[str, str | float]
 
 SCALES = ("complexity", "range", "std", "none")
@@ -45,7 +44,7 @@ def scales_of(fields: Mapping[str, Samples], scale: Scale) -> dict[str, float]:
     return {name: scale_of(one.columns, scale) for name, one in fields.items()}
 
 
-def scale_of(values: Array, scale: str | float) -> float:
+def scale_of(values: Floats, scale: str | float) -> float:
     """Return by what values (n,) or (n, k) are divided; 1 for constant ones and "complexity"."""
     if not isinstance(scale, str):
         return float(scale)

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arrays import Floats
 from ..kernels.elementary import power
 from ..kernels.growth import Growth
 from ..laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY
@@ -16,8 +14,6 @@ from .field_hessians import FieldHessian
 from .finishing import Finishing
 from .options import MetricOptions
 from .rootfind import COMPLEXITY_TOLERANCE, Evaluation, rescaling
-
-Array = NDArray[np.float64]
 
 ELEMENT_STEPS = 3
 """Corrections of the elements per complexity; they change by some per cent in the first."""
@@ -45,7 +41,7 @@ class Aimed:
 
 def aimed_at(
     finishing: Finishing,
-    base: Array,
+    base: Floats,
     found: Mapping[str, FieldHessian],
     options: MetricOptions,
 ) -> Aimed:
@@ -65,7 +61,7 @@ def aimed_at(
     return _capped(finishing, base, aimed, expected, options.max_elements)
 
 
-def _capped(finishing: Finishing, base: Array, aimed: Aimed, expected: float, cap: float) -> Aimed:
+def _capped(finishing: Finishing, base: Floats, aimed: Aimed, expected: float, cap: float) -> Aimed:
     """Aim below the cap, or refuse: nobody wants to wait for a mesh that is too large."""
     evaluations = aimed.evaluations
     for share in CAP_SHARES:  # the complexity may jump over the first of them
@@ -87,7 +83,7 @@ def _capped(finishing: Finishing, base: Array, aimed: Aimed, expected: float, ca
     )
 
 
-def _at_complexity(finishing: Finishing, base: Array, target: float, before: float = 1.0) -> Aimed:
+def _at_complexity(finishing: Finishing, base: Floats, target: float, before: float = 1.0) -> Aimed:
     """Aim at a complexity, from the factor `before` on."""
 
     def attempt(factor: float) -> tuple[float, Growth]:
@@ -112,7 +108,7 @@ def _at_complexity(finishing: Finishing, base: Array, target: float, before: flo
     )
 
 
-def _at_elements(finishing: Finishing, base: Array, elements: float) -> Aimed:
+def _at_elements(finishing: Finishing, base: Floats, elements: float) -> Aimed:
     """Aim at an expected number of elements; what one costs depends on the metric itself."""
     per = REAL_ELEMENTS_PER_COMPLEXITY[base.shape[-1]]
     aimed, evaluations = _at_complexity(finishing, base, elements / per), 0
@@ -127,7 +123,7 @@ def _at_elements(finishing: Finishing, base: Array, elements: float) -> Aimed:
 
 def _at_error(
     finishing: Finishing,
-    base: Array,
+    base: Floats,
     found: Mapping[str, FieldHessian],
     options: MetricOptions,
 ) -> Aimed:

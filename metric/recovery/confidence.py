@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Floats
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,11 +35,11 @@ class RecoveryConfidence:
     """
 
     order: NDArray[np.int8]
-    condition: Array
+    condition: Floats
     level: NDArray[np.int8]
-    discrepancy: Array
-    signal: Array
-    noise: Array
+    discrepancy: Floats
+    signal: Floats
+    noise: Floats
 
     def of_columns(self, columns: int | slice) -> RecoveryConfidence:
         """Return the evidence for some of the functions that were recovered together."""

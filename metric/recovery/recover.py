@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.graph import VertexGraph
 from ..mesh import MeshLike
 from .confidence import RecoveryConfidence
@@ -24,8 +24,6 @@ from .options import RecoveryOptions
 from .patches.noise import hessian_norm
 from .samples.cut_mesh import joined_gradients, joined_hessians, joined_worst
 from .samples.spaces import Samples, grouped, read_fields, read_samples
-
-Array = NDArray[np.float64]
 
 REPORTED_NOISE = 1e-12
 """Noise relative to the largest value that a ledger mentions; below, it is round-off."""
@@ -115,7 +113,7 @@ def recover_hessian(
     return _by_field(mesh, u, space, RecoveryOptions(method=method, **options), _joined_hessian)
 
 
-def hessian_and_noise(mesh: MeshLike, u: Any, *, space: str | None = None) -> tuple[Array, float]:
+def hessian_and_noise(mesh: MeshLike, u: Any, *, space: str | None = None) -> tuple[Floats, float]:
     """Recover the Hessian of a scalar, and the noise of its values that was kept out of it.
 
     Parameters
@@ -161,7 +159,7 @@ def recovery_confidence(
 class RecoveredField:
     """The damped Hessian (n, k, d, d) of a field for the pipeline, and a remark on it."""
 
-    hessian: Array
+    hessian: Floats
     remark: str
 
 
@@ -191,7 +189,7 @@ def hessians_of_fields(
     return {name: found[name] for name in fields}
 
 
-def _scaled_noise(noise: float | None, size: Array) -> Array | None:
+def _scaled_noise(noise: float | None, size: Floats) -> Floats | None:
     if noise is None:
         return None
     return np.divide(noise, size, out=np.zeros_like(size), where=size > 0.0)
@@ -237,11 +235,11 @@ def _confidence(setting: Setting) -> RecoveryConfidence:
     )
 
 
-def _joined_gradient(setting: Setting) -> Array:
+def _joined_gradient(setting: Setting) -> Floats:
     return joined_gradients(setting.cut, recovered_gradient(setting), setting.geometry.mass)
 
 
-def _joined_hessian(setting: Setting) -> Array:
+def _joined_hessian(setting: Setting) -> Floats:
     is_damped = setting.options.method == "auto" or setting.options.noise is not None
     H = recovered_hessian(setting).damped if is_damped else hessian_as_found(setting)
     return joined_hessians(setting.cut, H)
@@ -252,7 +250,7 @@ def _by_field(
     u: Any,
     space: str | None,
     options: RecoveryOptions,
-    recover: Callable[[Setting], Array | RecoveryConfidence],
+    recover: Callable[[Setting], Floats | RecoveryConfidence],
 ) -> Any:
     """Recover fields, those in one space together, and return them in the form of `u`."""
     is_alone = not isinstance(u, Mapping)
@@ -269,8 +267,8 @@ def _by_field(
 
 
 def _columns(
-    recovered: Array | RecoveryConfidence, columns: int | slice
-) -> Array | RecoveryConfidence:
+    recovered: Floats | RecoveryConfidence, columns: int | slice
+) -> Floats | RecoveryConfidence:
     if isinstance(recovered, RecoveryConfidence):
         return recovered.of_columns(columns)
     return recovered[:, columns]

@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
+from ..arrays import Floats, Ints
 from ..kernels.algebra import eigh
 from ..kernels.elementary import angle_of, cosine
 from ..kernels.spectra import product
 from ..vectors import norms
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int32]
 Places = NDArray[np.intp]
 
 SMALLEST_RATIO = 1e-10
@@ -37,11 +36,11 @@ class BoundaryShape:
     """
 
     points: Places
-    directions: Array
-    curvatures: Array
+    directions: Floats
+    curvatures: Floats
 
 
-def curve_shape(points: Array, segments: Index, tags: Index, ridge_angle: float) -> BoundaryShape:
+def curve_shape(points: Floats, segments: Ints, tags: Ints, ridge_angle: float) -> BoundaryShape:
     """Curvature of polygons: that of the circle through a vertex and its two neighbours.
 
     Where a curve ends, branches, changes its tag or turns by more than `ridge_angle` (radians),
@@ -77,9 +76,7 @@ def curve_shape(points: Array, segments: Index, tags: Index, ridge_angle: float)
     )
 
 
-def surface_shape(
-    points: Array, triangles: Index, tags: Index, ridge_angle: float
-) -> BoundaryShape:
+def surface_shape(points: Floats, triangles: Ints, tags: Ints, ridge_angle: float) -> BoundaryShape:
     """Curvatures of a triangulated surface, by a quadric through the two rings of a vertex.
 
     The surface is cut into patches along ridges and changes of the tag; a vertex has one
@@ -99,7 +96,7 @@ def surface_shape(
     return _principal(vertex, frames, gradient, second)
 
 
-def _patches(points: Array, triangles: Index, tags: Index, ridge_angle: float) -> Index:
+def _patches(points: Floats, triangles: Ints, tags: Ints, ridge_angle: float) -> Ints:
     """Patch (k,) of each triangle: connected across edges that are no ridges."""
     m = len(triangles)
     edges = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
@@ -123,7 +120,7 @@ def _patches(points: Array, triangles: Index, tags: Index, ridge_angle: float) -
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int32)
 
 
-def _frames(corners: Array, nodes: Places, n_nodes: int) -> Array:
+def _frames(corners: Floats, nodes: Places, n_nodes: int) -> Floats:
     """Two tangents and the normal of each node (n_nodes, 3, 3), in columns.
 
     The normal is the main axis of the sum of ``n n^T`` over the triangles, so that they need
@@ -150,7 +147,7 @@ def _two_rings(nodes: Places, n_nodes: int) -> tuple[Places, Places]:
     return pairs.row[different].astype(np.intp), pairs.col[different].astype(np.intp)
 
 
-def _quadrics(local: Array, centre: Places, n_nodes: int) -> tuple[Array, Array]:
+def _quadrics(local: Floats, centre: Places, n_nodes: int) -> tuple[Floats, Floats]:
     """Gradients (n, 2) and second derivatives (n, 2, 2) of the fits at the nodes."""
     x, y, z = local.T
     square = x * x + y * y + z * z
@@ -175,7 +172,7 @@ def _quadrics(local: Array, centre: Places, n_nodes: int) -> tuple[Array, Array]
     return fit[:, :2], second
 
 
-def _least_norm(A: Array, right: Array) -> Array:
+def _least_norm(A: Floats, right: Floats) -> Floats:
     """Return the solutions (n, k) of least norm of ``A x = right``, A semidefinite (n, k, k)."""
     values, vectors = eigh(A)
     kept = values > SMALLEST_RATIO * values[:, -1:]
@@ -184,7 +181,7 @@ def _least_norm(A: Array, right: Array) -> Array:
     return np.asarray(np.einsum("nij,nj->ni", vectors, along))
 
 
-def _principal(vertex: Places, frames: Array, gradient: Array, second: Array) -> BoundaryShape:
+def _principal(vertex: Places, frames: Floats, gradient: Floats, second: Floats) -> BoundaryShape:
     """Principal curvatures and directions of the graphs over the tangent planes."""
     # the eigenvalues increase, so the normal is the last column
     tangents = frames[:, :, :2] + frames[:, :, 2:] * gradient[:, None, :]

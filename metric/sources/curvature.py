@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats, Ints
 from ..kernels.intersection import intersect
 from ..kernels.spectra import product
 from ..mesh import MeshLike, diameter
 from ..tensors.checks import check_result
 from .boundary_shape import BoundaryShape, curve_shape, surface_shape
 from .sizes import from_sizes
-
-Array = NDArray[np.float64]
 
 
 def curvature_metric(
@@ -27,7 +25,7 @@ def curvature_metric(
     h_min: float | None = None,
     h_max: float | None = None,
     ridge_angle: float = 45.0,
-) -> Array:
+) -> Floats:
     """Return the metric that resolves the curvature of curves in 2D and surfaces in 3D.
 
     Along each principal direction of the boundary with radius of curvature R the size is
@@ -89,7 +87,7 @@ def curvature_metric(
 
 def _size_rule(
     points_per_circle: float | None, chord_error: float | None, hausdorff_number: float | None
-) -> Callable[[Array], Array]:
+) -> Callable[[Floats], Floats]:
     """Return the function from curvatures to sizes."""
     rules = (points_per_circle, chord_error, hausdorff_number)
     if sum(rule is not None for rule in rules) != 1:
@@ -113,7 +111,7 @@ def _size_rule(
     if not (np.isfinite(error) and error > 0.0):
         raise ValueError(f"chord_error must be positive, got {error}")
 
-    def chord(curvature: Array) -> Array:
+    def chord(curvature: Floats) -> Floats:
         radius = _radius(curvature)
         within = np.minimum(error, radius)
         return np.asarray(2.0 * np.sqrt(within * (2.0 * radius - within)))
@@ -121,13 +119,11 @@ def _size_rule(
     return chord
 
 
-def _radius(curvature: Array) -> Array:
+def _radius(curvature: Floats) -> Floats:
     return 1.0 / np.maximum(curvature, 1e-100)
 
 
-def _selected(
-    mesh: MeshLike, tags: int | Sequence[int] | None
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def _selected(mesh: MeshLike, tags: int | Sequence[int] | None) -> tuple[Ints, Ints]:
     """Facets and their tags, of all or of the given tags."""
     if tags is None:
         return mesh.facets, mesh.facet_tags
@@ -139,7 +135,7 @@ def _selected(
     return mesh.facets[chosen], mesh.facet_tags[chosen]
 
 
-def _intersect_along(M: Array, shape: BoundaryShape, h: Array, h_normal: float) -> None:
+def _intersect_along(M: Floats, shape: BoundaryShape, h: Floats, h_normal: float) -> None:
     """Intersect `M` in place with the metrics of the shapes; a point may have several."""
     d = M.shape[-1]
     across = shape.directions.transpose(0, 2, 1)

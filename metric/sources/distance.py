@@ -6,16 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..arrays import Floats
 from ..vectors import norms
 
-Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 FIRST_NEIGHBOURS = 4
 """Facets looked at per point in the first round; the number doubles until it is enough."""
 
 
-def distance_to_facets(points: Array, facets: Array) -> Array:
+def distance_to_facets(points: Floats, facets: Floats) -> Floats:
     """Exact distance (n,) from each point to the nearest of k facets (k, d, d).
 
     Facets are taken by the distance of their centres from a tree; one whose centre is further
@@ -38,14 +38,14 @@ def distance_to_facets(points: Array, facets: Array) -> Array:
     return best
 
 
-def _distance(points: Array, facets: Array) -> Array:
+def _distance(points: Floats, facets: Floats) -> Floats:
     """Distance (n,) from each point to its own facet (n, d, d)."""
     if facets.shape[1] == 2:
         return _to_segment(points, facets[:, 0], facets[:, 1])
     return _to_triangle(points, facets)
 
 
-def _to_segment(x: Array, a: Array, b: Array) -> Array:
+def _to_segment(x: Floats, a: Floats, b: Floats) -> Floats:
     v = b - a
     along = np.einsum("ni,ni->n", x - a, v)
     length = np.maximum(np.einsum("ni,ni->n", v, v), np.finfo(float).tiny)
@@ -53,7 +53,7 @@ def _to_segment(x: Array, a: Array, b: Array) -> Array:
     return np.asarray(norms(x - a - share[:, None] * v))
 
 
-def _to_triangle(x: Array, triangle: Array) -> Array:
+def _to_triangle(x: Floats, triangle: Floats) -> Floats:
     a, b, c = triangle.transpose(1, 0, 2)
     sides = [_to_segment(x, a, b), _to_segment(x, b, c), _to_segment(x, c, a)]
     normal = np.cross(b - a, c - a)

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..kernels.algebra import absolute, eigenvalues
 from ..laws.normalisation import normalised
 from ..mesh import MeshLike
 from ..recovery import recover_hessian
 from ..tensors.checks import check_tensors
 
-Array = NDArray[np.float64]
 
-
-def weighted_hessian(hessians: ArrayLike, weights: ArrayLike) -> Array:
+def weighted_hessian(hessians: ArrayLike, weights: ArrayLike) -> Floats:
     """Sum of absolute Hessians, each with the weight that the adjoint gives it [1]_.
 
     Parameters
@@ -64,7 +63,7 @@ def weighted_hessian(hessians: ArrayLike, weights: ArrayLike) -> Array:
     return total
 
 
-def flux_hessian(mesh: MeshLike, fluxes: ArrayLike, adjoint_gradient: ArrayLike) -> Array:
+def flux_hessian(mesh: MeshLike, fluxes: ArrayLike, adjoint_gradient: ArrayLike) -> Floats:
     """Weighted Hessian of a conservation law: ``sum_ki |d_i z_k| |H(F_ki)|`` [1]_.
 
     Parameters
@@ -102,7 +101,7 @@ def flux_hessian(mesh: MeshLike, fluxes: ArrayLike, adjoint_gradient: ArrayLike)
     return weighted_hessian(recover_hessian(mesh, F.reshape(n, -1)), slope.reshape(n, -1))
 
 
-def diffusion_hessian(mesh: MeshLike, u: ArrayLike, adjoint: ArrayLike) -> Array:
+def diffusion_hessian(mesh: MeshLike, u: ArrayLike, adjoint: ArrayLike) -> Floats:
     """Weighted Hessian of a diffusion problem: ``sum_k r(H(z_k)) |H(u_k)|`` [1]_.
 
     The error of Galerkin's method in the output is the product of the gradients of two errors,
@@ -154,8 +153,8 @@ def weighted_hessian_metric(
     *,
     target_complexity: float,
     p: float = 1.0,
-    h_max: float | Array | None = None,
-) -> Array:
+    h_max: float | Floats | None = None,
+) -> Floats:
     """Metric of the `weighted_hessian`, normalised; see there and `normalised`."""
     H = weighted_hessian(hessians, weights)
     return normalised(mesh, H, target_complexity=target_complexity, p=p, h_max=h_max)
@@ -168,14 +167,14 @@ def goal_metric(
     *,
     target_complexity: float,
     p: float = 1.0,
-    h_max: float | Array | None = None,
-) -> Array:
+    h_max: float | Floats | None = None,
+) -> Floats:
     """Metric of the `diffusion_hessian`, normalised; see there and `normalised`."""
     H = diffusion_hessian(mesh, u, adjoint)
     return normalised(mesh, H, target_complexity=target_complexity, p=p, h_max=h_max)
 
 
-def _checked(values: ArrayLike, name: str) -> Array:
+def _checked(values: ArrayLike, name: str) -> Floats:
     array = np.asarray(values, dtype=np.float64)
     bad = np.flatnonzero(~np.isfinite(array.reshape(len(array), -1)).all(axis=1))
     if bad.size:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import scipy  # loads scipy.optimize, 9 MB, when it is first used
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..kernels.algebra import absolute, eigh
 from ..kernels.elementary import exp, log, power
 from ..kernels.spectra import compose
@@ -14,8 +15,6 @@ from ..laws.complexity import complexity
 from ..laws.normalisation import SMALLEST_FLOOR, check_target
 from ..mesh import MeshLike, cell_volumes, diameter
 from ..tensors.checks import check_tensors
-
-Array = NDArray[np.float64]
 
 LARGEST_STEP = 60.0
 """Largest logarithm of the factor on the density that is tried, in either direction."""
@@ -26,10 +25,10 @@ def dwr_metric(
     indicators: ArrayLike,
     *,
     target_complexity: float,
-    H: Array | None = None,
+    H: Floats | None = None,
     order: float = 2.0,
-    h_max: float | Array | None = None,
-) -> Array:
+    h_max: float | Floats | None = None,
+) -> Floats:
     """Metric whose density equidistributes error indicators, and whose shape is a Hessian's.
 
     Let the indicator e of a cell of volume V belong to an error that falls like h^order, so like
@@ -80,7 +79,7 @@ def dwr_metric(
     base = power(density, 2.0 / d)[:, None, None] * _shapes(mesh, H)
     largest = diameter(mesh) if h_max is None else h_max
 
-    def scaled(log_factor: float) -> Array:
+    def scaled(log_factor: float) -> Floats:
         return bounded(exp(2.0 * log_factor / d) * base, h_max=largest)
 
     def excess(log_factor: float) -> float:
@@ -97,7 +96,7 @@ def dwr_metric(
     return scaled(found)
 
 
-def _checked(indicators: ArrayLike, n_cells: int) -> Array:
+def _checked(indicators: ArrayLike, n_cells: int) -> Floats:
     """Absolute indicators relative to the largest; ones where all are zero."""
     errors = np.abs(np.asarray(indicators, dtype=np.float64))
     if errors.shape != (n_cells,):
@@ -109,7 +108,7 @@ def _checked(indicators: ArrayLike, n_cells: int) -> Array:
     return errors / largest if largest > 0.0 else np.ones_like(errors)
 
 
-def _density(mesh: MeshLike, counts: Array) -> Array:
+def _density(mesh: MeshLike, counts: Floats) -> Floats:
     """Cells per volume at the points, from the number that each cell should become."""
     n, corners = len(mesh.points), mesh.cells.shape[1]
     around = mesh.cells.ravel()
@@ -119,7 +118,7 @@ def _density(mesh: MeshLike, counts: Array) -> Array:
     return np.asarray(np.maximum(density, SMALLEST_FLOOR * density.max()))
 
 
-def _shapes(mesh: MeshLike, H: Array | None) -> Array:
+def _shapes(mesh: MeshLike, H: Floats | None) -> Floats:
     """Tensors (n, d, d) of determinant one."""
     n, d = mesh.points.shape
     if H is None:

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..kernels.elementary import log
 from ..laws.gradation import GrowthLaw
 from ..mesh import MeshLike, diameter
 from ..vectors import norms
 from .distance import distance_to_facets
-
-Array = NDArray[np.float64]
 
 
 def size_near_points(
@@ -24,7 +23,7 @@ def size_near_points(
     radius: float = 0.0,
     growth: float | None = 1.5,
     h_far: float | None = None,
-) -> Array:
+) -> Floats:
     """Sizes that are `h` within `radius` of given points and grow from there.
 
     Give the result to `from_sizes` to intersect it with another metric, or as `h_max`.
@@ -75,7 +74,7 @@ def size_in_box(
     *,
     growth: float | None = 1.5,
     h_far: float | None = None,
-) -> Array:
+) -> Floats:
     """Sizes that are `h` in the box from `low` to `high` (d,) and grow from there.
 
     The other parameters, the result and the errors are those of `size_near_points`.
@@ -96,7 +95,7 @@ def size_near_boundary(
     *,
     growth: float | None = 1.5,
     h_far: float | None = None,
-) -> Array:
+) -> Floats:
     """Sizes that are `h` on the facets with the given tags and grow with the distance to them.
 
     The other parameters, the result and the errors are those of `size_near_points`; a tag that no
@@ -114,8 +113,8 @@ def size_near_boundary(
 
 
 def _grown(
-    mesh: MeshLike, h: float, distance: Array, growth: float | None, h_far: float | None
-) -> Array:
+    mesh: MeshLike, h: float, distance: Floats, growth: float | None, h_far: float | None
+) -> Floats:
     """Return the size at a distance: ``h + distance ln b``, at most `h_far`."""
     GrowthLaw(factor=growth, model="physical")  # raises if the factor is no growth
     far = diameter(mesh) if h_far is None else h_far
@@ -127,7 +126,7 @@ def _grown(
     return np.minimum(h + log(growth) * outside, far)
 
 
-def _check_sizes(h: ArrayLike, k: int) -> Array:
+def _check_sizes(h: ArrayLike, k: int) -> Floats:
     sizes = np.asarray(h, dtype=np.float64)
     if sizes.shape not in ((), (k,)):
         raise ValueError(f"h has shape {sizes.shape} but there are {k} places")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..tensors.checks import check_result
 
 
-def from_sizes(h: ArrayLike, dim: int = 2) -> NDArray[np.float64]:
+def from_sizes(h: ArrayLike, dim: int = 2) -> Floats:
     """Return the metric that asks for the sizes `h`.
 
     Parameters

@@ -7,6 +7,7 @@ import logging
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Floats
 from ..kernels.algebra import eigenvalues, eigh
 from ..kernels.spectra import compose
 from ..mesh import MeshLike
@@ -51,7 +52,7 @@ def check_metric(
     dim: int | None = None,
     name: str = "metric",
     repair: str = "raise",
-) -> NDArray[np.float64]:
+) -> Floats:
     """Return `M` as a contiguous, exactly symmetric float64 array, or raise.
 
     Parameters
@@ -107,7 +108,7 @@ def check_metric(
     return tensors
 
 
-def check_metric_on(mesh: MeshLike, M: ArrayLike) -> NDArray[np.float64]:
+def check_metric_on(mesh: MeshLike, M: ArrayLike) -> Floats:
     """Return what `check_metric` does of a metric at the points of a mesh."""
     n, d = mesh.points.shape
     return check_metric(M, n_points=n, dim=d)
@@ -119,7 +120,7 @@ def check_repair(repair: str) -> None:
         raise ValueError(f"repair must be one of {', '.join(REPAIRS)}, got {repair!r}")
 
 
-def check_result(M: NDArray[np.float64], operation: str) -> NDArray[np.float64]:
+def check_result(M: Floats, operation: str) -> Floats:
     """Return what an operation made of checked metrics, or raise naming it and the point.
 
     An intersection of two metrics can have twice the ratio of theirs, and a mean of sizes, or
@@ -146,7 +147,7 @@ def check_result(M: NDArray[np.float64], operation: str) -> NDArray[np.float64]:
     return M
 
 
-def _check_magnitude(tensors: NDArray[np.float64], name: str) -> None:
+def _check_magnitude(tensors: Floats, name: str) -> None:
     """Raise MetricError where determinants would leave the range of doubles; zero passes."""
     bound = LARGEST_ENTRY[tensors.shape[-1]]
     largest = np.abs(tensors).max(axis=(1, 2), initial=0.0)
@@ -158,14 +159,14 @@ def _check_magnitude(tensors: NDArray[np.float64], name: str) -> None:
         )
 
 
-def _singular(tensors: NDArray[np.float64]) -> NDArray[np.intp]:
+def _singular(tensors: Floats) -> NDArray[np.intp]:
     """Points whose tensor is not positive definite in double precision."""
     values = eigenvalues(tensors)
     smallest, largest = values[:, 0], values[:, -1]
     return np.flatnonzero(~((smallest > 0.0) & (largest <= ROUNDED * LARGEST_RATIO * smallest)))
 
 
-def _what_is_wrong(values: NDArray[np.float64]) -> str:
+def _what_is_wrong(values: Floats) -> str:
     """Say why a tensor with these increasing eigenvalues (d,) is no metric."""
     smallest, largest = values[0], values[-1]
     if not smallest > 0.0:
@@ -176,7 +177,7 @@ def _what_is_wrong(values: NDArray[np.float64]) -> str:
     )
 
 
-def _not_finite(rows: NDArray[np.float64]) -> NDArray[np.intp]:
+def _not_finite(rows: Floats) -> NDArray[np.intp]:
     """Return the indices of rows (n, k) that hold NaN or infinity."""
     with np.errstate(over="ignore", invalid="ignore"):
         total = rows.sum()
@@ -187,7 +188,7 @@ def _not_finite(rows: NDArray[np.float64]) -> NDArray[np.intp]:
 
 def check_tensors(
     T: ArrayLike, *, n_points: int | None = None, dim: int | None = None, name: str = "tensor"
-) -> NDArray[np.float64]:
+) -> Floats:
     """Return finite symmetric tensors (n, d, d) as a new symmetric array, or raise MetricError."""
     given = np.asarray(T)
     if given.dtype.kind not in "biuf":
@@ -208,7 +209,7 @@ def check_tensors(
     return tensors
 
 
-def _symmetrise(tensors: NDArray[np.float64], name: str) -> None:
+def _symmetrise(tensors: Floats, name: str) -> None:
     """Remove asymmetry that is round-off in place, raise MetricError for any other."""
     upper = np.triu_indices(tensors.shape[-1], 1)
     pairs = [(tensors[:, i, j], tensors[:, j, i]) for i, j in zip(*upper, strict=True)]
@@ -227,9 +228,7 @@ def _symmetrise(tensors: NDArray[np.float64], name: str) -> None:
         below[...] = above
 
 
-def check_values(
-    values: ArrayLike, *, n_points: int, name: str, what: str = "points"
-) -> NDArray[np.float64]:
+def check_values(values: ArrayLike, *, n_points: int, name: str, what: str = "points") -> Floats:
     """Return values (n,) or (n, k) as float64, or raise naming the field and the point.
 
     `what` says what there are `n_points` of: points, cells, or points and edges.

@@ -6,21 +6,19 @@ from collections.abc import Sequence
 from functools import reduce
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..kernels.algebra import congruent, eigh, exp_metric, log_metric, lower_factor
 from ..kernels.intersection import intersect
 from ..kernels.spectra import compose, product
 from .checks import check_metric, check_result
 from .ellipsoids import largest_inside
 
-Array = NDArray[np.float64]
-
-
 RULES = ("pairwise", "john")
 
 
-def intersected(M: Array, *others: Array, rule: str = "pairwise") -> Array:
+def intersected(M: Floats, *others: Floats, rule: str = "pairwise") -> Floats:
     """Intersection of metrics: at least as fine as each of them in every direction.
 
     Two metrics are diagonal in one common basis; the larger of the two values is taken on
@@ -55,7 +53,7 @@ def intersected(M: Array, *others: Array, rule: str = "pairwise") -> Array:
     return check_result(intersection_of(_checked([M, *others]), rule), "the intersection")
 
 
-def intersection_of(metrics: Sequence[Array], rule: str) -> Array:
+def intersection_of(metrics: Sequence[Floats], rule: str) -> Floats:
     """Intersect checked metrics by a checked rule."""
     if rule == "john" and len(metrics) > 2:
         return largest_inside(metrics)
@@ -68,7 +66,7 @@ def check_rule(rule: str) -> None:
         raise ValueError(f"intersection rule must be one of {', '.join(RULES)}, got {rule!r}")
 
 
-def mean(metrics: Sequence[Array], weights: ArrayLike | None = None) -> Array:
+def mean(metrics: Sequence[Floats], weights: ArrayLike | None = None) -> Floats:
     """Log-Euclidean mean of metrics.
 
     Parameters
@@ -106,7 +104,7 @@ def mean(metrics: Sequence[Array], weights: ArrayLike | None = None) -> Array:
     return check_result(exp_metric(L), "the log-Euclidean mean")
 
 
-def _checked(metrics: Sequence[Array]) -> list[Array]:
+def _checked(metrics: Sequence[Floats]) -> list[Floats]:
     """Check metrics at the same points; the message numbers them if there are several."""
     names = [f"metric number {k + 1}" for k in range(len(metrics))]
     first = check_metric(metrics[0], name=names[0] if len(metrics) > 1 else "metric")
@@ -115,7 +113,7 @@ def _checked(metrics: Sequence[Array]) -> list[Array]:
     return [first, *(check_metric(M, n_points=n, dim=d, name=name) for M, name in rest)]
 
 
-def limited_step(current: Array, target: Array, ratio: float = 2.0) -> Array:
+def limited_step(current: Floats, target: Floats, ratio: float = 2.0) -> Floats:
     """Go from a current metric towards a target, changing no size by more than `ratio`.
 
     In the basis that makes both diagonal, each size h of the target is held between the

@@ -10,6 +10,7 @@ from itertools import combinations, combinations_with_replacement
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..kernels.algebra import (
     congruent,
     eigenvalues,
@@ -23,7 +24,6 @@ from ..kernels.algebra import (
 from ..kernels.intersection import intersect
 from ..kernels.spectra import product
 
-Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 GAP = 1e-8
@@ -46,7 +46,7 @@ CENTRED = 0.1
 """A stage ends when the Newton decrement is below this: the next one starts near enough."""
 
 
-def largest_inside(metrics: Sequence[Array]) -> Array:
+def largest_inside(metrics: Sequence[Floats]) -> Floats:
     """Metric of the largest ellipsoid inside the unit balls of k checked metrics (n, d, d).
 
     Maximise ``log det X`` over the ``X = M^-1`` with ``X <= M_i^-1`` for all i [1]_, by a barrier
@@ -67,7 +67,7 @@ def largest_inside(metrics: Sequence[Array]) -> Array:
     return result
 
 
-def _where_two_do_not_decide(result: Array, metrics: Sequence[Array]) -> Index:
+def _where_two_do_not_decide(result: Floats, metrics: Sequence[Floats]) -> Index:
     """Put the answer in `result` where an intersection of two is inside all; return where not.
 
     An ellipsoid that is the largest inside two of the balls and is inside the others as well
@@ -84,7 +84,7 @@ def _where_two_do_not_decide(result: Array, metrics: Sequence[Array]) -> Index:
     return undecided
 
 
-def _by_barrier(pairwise: Array, metrics: Sequence[Array]) -> Array:
+def _by_barrier(pairwise: Floats, metrics: Sequence[Floats]) -> Floats:
     """Solve the problem in the basis of the pairwise intersection, and come back."""
     L = lower_factor(pairwise)
     roots = np.stack([sqrt_metric(_lifted(congruent(L, M))) for M in metrics], axis=1)
@@ -95,14 +95,14 @@ def _by_barrier(pairwise: Array, metrics: Sequence[Array]) -> Array:
     return reduce(intersect, metrics, inside)
 
 
-def _lifted(S: Array) -> Array:
+def _lifted(S: Floats) -> Floats:
     """Keep round-off from making the smallest eigenvalues of `S` (at most 1) negative."""
     d = S.shape[-1]
     S[:, range(d), range(d)] += np.finfo(float).eps
     return S
 
 
-def _barrier_method(roots: Array) -> Array:
+def _barrier_method(roots: Floats) -> Floats:
     """Maximise log det X subject to ``R_i X R_i <= I`` for the roots R (n, k, d, d)."""
     n, k, d, _ = roots.shape
     basis = _symmetric_basis(d)
@@ -124,7 +124,7 @@ def _barrier_method(roots: Array) -> Array:
     return X
 
 
-def _newton_step(X: Array, roots: Array, weight: Array, basis: Array) -> tuple[Array, Array]:
+def _newton_step(X: Floats, roots: Floats, weight: Floats, basis: Floats) -> tuple[Floats, Floats]:
     """Damped Newton step for ``-weight log det X - sum log det(I - R X R)``, and the decrement."""
     n, k, d, _ = roots.shape
     slack = np.eye(d) - product(product(roots, X[:, None]), roots)
@@ -145,12 +145,12 @@ def _newton_step(X: Array, roots: Array, weight: Array, basis: Array) -> tuple[A
     return step * length[:, None, None], decrement
 
 
-def _largest_ratio(A: Array, B: Array) -> Array:
+def _largest_ratio(A: Floats, B: Floats) -> Floats:
     """Largest eigenvalue (n,) of symmetric `A` relative to positive definite `B`."""
     return np.asarray(eigenvalues(congruent(lower_factor(B), A))[:, -1])
 
 
-def _curvature(A: Array, basis: Array) -> Array:
+def _curvature(A: Floats, basis: Floats) -> Floats:
     """Sum over k of ``tr(A_k B_a A_k B_b)`` for A (n, k, d, d) and the basis B: (n, a, b)."""
     n, k, d, _ = A.shape
     images = product(A[:, None], basis[:, None])  # (n, a, k, d, d)
@@ -159,7 +159,7 @@ def _curvature(A: Array, basis: Array) -> Array:
     return product(rows, columns)
 
 
-def _symmetric_basis(d: int) -> Array:
+def _symmetric_basis(d: int) -> Floats:
     """Orthonormal basis (d (d + 1) / 2, d, d) of the symmetric matrices."""
     pairs = list(combinations_with_replacement(range(d), 2))
     basis = np.zeros((len(pairs), d, d))

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..kernels import algebra
 from .checks import check_metric, check_result, check_tensors
 
-Array = NDArray[np.float64]
 
-
-def log_metric(M: Array) -> Array:
+def log_metric(M: Floats) -> Floats:
     """Matrix logarithm (n, d, d) of a metric.
 
     Raises
@@ -22,7 +21,7 @@ def log_metric(M: Array) -> Array:
     return algebra.log_metric(check_metric(M))
 
 
-def exp_metric(L: Array) -> Array:
+def exp_metric(L: Floats) -> Floats:
     """Matrix exponential (n, d, d) of symmetric `L`: a metric.
 
     Raises
@@ -36,7 +35,7 @@ def exp_metric(L: Array) -> Array:
     return check_result(M, "the exponential")
 
 
-def sqrt_metric(M: Array) -> Array:
+def sqrt_metric(M: Floats) -> Floats:
     """Symmetric positive definite square root (n, d, d) of a metric.
 
     Raises
@@ -47,7 +46,7 @@ def sqrt_metric(M: Array) -> Array:
     return algebra.sqrt_metric(check_metric(M))
 
 
-def absolute(H: Array, floor: ArrayLike = 0.0) -> Array:
+def absolute(H: Floats, floor: ArrayLike = 0.0) -> Floats:
     """Return ``|H|``: the absolute values of the eigenvalues of `H`, at least `floor`.
 
     Parameters
@@ -65,7 +64,7 @@ def absolute(H: Array, floor: ArrayLike = 0.0) -> Array:
     return algebra.absolute(check_tensors(H), floor)
 
 
-def interpolated(M: Array, weights: Array) -> Array:
+def interpolated(M: Floats, weights: Floats) -> Floats:
     """Log-Euclidean interpolation of metrics.
 
     Parameters

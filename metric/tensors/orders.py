@@ -18,9 +18,9 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Floats
+
 Order = Literal["medit", "mmg_api", "vtk", "xdmf", "omega_h", "underworld", "full"]
 
 _LOWER = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
@@ -56,7 +56,7 @@ def _positions(order: str, dim: int) -> tuple[tuple[int, int], ...]:
     return known[order]
 
 
-def to_components(tensors: Array, order: Order) -> Array:
+def to_components(tensors: Floats, order: Order) -> Floats:
     """Return the components of symmetric tensors in a named order.
 
     Parameters
@@ -81,7 +81,7 @@ def to_components(tensors: Array, order: Order) -> Array:
     return np.ascontiguousarray(tensors[:, rows, columns])
 
 
-def from_components(components: Array, order: Order) -> Array:
+def from_components(components: Floats, order: Order) -> Floats:
     """Return symmetric tensors from components in a named order.
 
     Parameters
@@ -118,7 +118,7 @@ def from_components(components: Array, order: Order) -> Array:
     return tensors
 
 
-def _check_symmetric(tensors: Array) -> None:
+def _check_symmetric(tensors: Floats) -> None:
     skew = np.abs(tensors - tensors.transpose(0, 2, 1)).max(axis=(1, 2), initial=0)
     size = np.abs(tensors).max(axis=(1, 2), initial=0)
     bad = skew > SYMMETRY * size

@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ...arrays import Floats
 from ...kernels.graph import pair_graph
 from ..patches.fit import Cloud, fit_patches
 from ..samples.cells import CellGeometry, boundary_facets
-
-Array = NDArray[np.float64]
 
 EXTRAPOLATION_LEVELS = (2, 3)
 """How often patches are grown. Errors of the values inside are not smooth; lines through two
@@ -37,12 +36,12 @@ class Boundary:
         Those of them that end inside.
     """
 
-    points: Array
+    points: Floats
     rows: NDArray[np.intp]
     neighbours: sparse.csr_array
     inner: sparse.csr_array
 
-    def extrapolated(self, values: Array) -> Array:
+    def extrapolated(self, values: Floats) -> Floats:
         """Replace the values (n, ...) at the boundary by lines through those inside.
 
         Where the points inside a patch determine no line, their mean is taken; where there are

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Floats
 from ..patches.fit import SMALLEST_PIVOT, Fits, covariances, fit_patches
 from ..patches.least_squares import LAST_PIVOT
 from ..patches.noise import (
@@ -22,8 +23,6 @@ from .larger_patches import grow_against_noise, is_measurable
 from .projection import L2Projection
 from .setting import Setting
 from .weak import weak_hessian
-
-Array = NDArray[np.float64]
 
 QUADRATIC, LINEAR = 2, 1
 """Orders: a quadratic was fitted, or gradients were projected twice."""
@@ -52,28 +51,28 @@ class RecoveredHessian:
         Standard deviation of the values.
     """
 
-    hessian: Array
+    hessian: Floats
     order: NDArray[np.int8]
-    pivot: Array
+    pivot: Floats
     level: NDArray[np.int8]
-    covariance: Array
-    roundoff: Array
-    threshold: Array
-    noise: Array
+    covariance: Floats
+    roundoff: Floats
+    threshold: Floats
+    noise: Floats
 
     @cached_property
-    def norm(self) -> Array:
+    def norm(self) -> Floats:
         """Norms (N, k) of the Hessians, see `hessian_norm`."""
         return hessian_norm(self.hessian, self.covariance)
 
     @cached_property
-    def damped(self) -> Array:
+    def damped(self) -> Floats:
         """The Hessians without what noise can have made."""
         clean = without_roundoff(self.hessian, self.covariance, self.roundoff)
         return damped(clean, self.covariance, self.threshold)
 
 
-def recovered_gradient(setting: Setting) -> Array:
+def recovered_gradient(setting: Setting) -> Floats:
     """Gradients (N, k, d) by the method of the setting."""
     if setting.method == "quadratic":
         fits = _fitted(setting)
@@ -86,14 +85,14 @@ def recovered_gradient(setting: Setting) -> Array:
     return _projected_gradient(setting, _point_values(setting))
 
 
-def hessian_as_found(setting: Setting) -> Array:
+def hessian_as_found(setting: Setting) -> Floats:
     """Hessians (N, k, d, d) by the method of the setting, without regard to noise."""
     if setting.method != "quadratic":
         return _projected_hessian(setting)
     return _fitted_hessian(setting, _fitted(setting))
 
 
-def recovered_hessian(setting: Setting, noise: Array | None = None) -> RecoveredHessian:
+def recovered_hessian(setting: Setting, noise: Floats | None = None) -> RecoveredHessian:
     """Hessians by the method of the setting, with the means to damp noise (k,)."""
     N = len(setting.cut.points)
     noise = _noise(setting) if noise is None else noise
@@ -127,7 +126,7 @@ def recovered_hessian(setting: Setting, noise: Array | None = None) -> Recovered
     )
 
 
-def _of_stars(setting: Setting) -> Array:
+def _of_stars(setting: Setting) -> Floats:
     """Covariances (N, d, d) of the neighbours of the points, for what no patch is fitted to."""
     points, graph = setting.cut.points, setting.graph
     v = points[graph.neighbours] - points[graph.sources]
@@ -161,7 +160,7 @@ def _quadratics(setting: Setting, pivots: tuple[float, ...], *, with_gain: bool 
     )
 
 
-def _fitted_hessian(setting: Setting, fits: Fits) -> Array:
+def _fitted_hessian(setting: Setting, fits: Fits) -> Floats:
     """Hessians of the fits, and by ``l2`` where there is none."""
     H, missing = fits.hessian, fits.level < 0
     if missing.any():
@@ -169,7 +168,7 @@ def _fitted_hessian(setting: Setting, fits: Fits) -> Array:
     return setting.bounded(H)
 
 
-def _point_values(setting: Setting) -> Array:
+def _point_values(setting: Setting) -> Floats:
     """Point values (N, k): those given, or of quadratics with the given means over the cells.
 
     A projection of the means would be wrong by a term of first order that depends on the shape
@@ -185,7 +184,7 @@ def _point_values(setting: Setting) -> Array:
     return values
 
 
-def _projected_gradient(setting: Setting, values: Array) -> Array:
+def _projected_gradient(setting: Setting, values: Floats) -> Floats:
     """Project the gradients in the cells of P1 fields (N, k) onto the points."""
     in_cells = setting.geometry.gradients(values)
     m, k, d = in_cells.shape
@@ -193,7 +192,7 @@ def _projected_gradient(setting: Setting, values: Array) -> Array:
     return setting.bounded(projected.reshape(-1, k, d))
 
 
-def _projected_hessian(setting: Setting) -> Array:
+def _projected_hessian(setting: Setting) -> Floats:
     """Hessians (N, k, d, d) of the methods that project what they know in the cells."""
     is_p2 = setting.samples.space == "P2"
     if setting.method in ("mixed_l2", "green"):
@@ -208,7 +207,7 @@ def _projected_hessian(setting: Setting) -> Array:
     return np.asarray(0.5 * (H + H.transpose(0, 1, 3, 2)))
 
 
-def _weak_hessian(setting: Setting) -> Array:
+def _weak_hessian(setting: Setting) -> Floats:
     """Hessians by Green's formula.
 
     The gradient in the volume is that of the cells for ``green`` and for P2 samples, and the
@@ -229,7 +228,7 @@ def _weak_hessian(setting: Setting) -> Array:
     return setting.bounded(H)
 
 
-def _noise(setting: Setting) -> Array:
+def _noise(setting: Setting) -> Floats:
     """Return the standard deviations (k,) of the samples: given, or estimated."""
     if setting.options.noise is not None:
         return np.full(setting.samples.columns.shape[1], setting.options.noise)
@@ -238,7 +237,7 @@ def _noise(setting: Setting) -> Array:
     )
 
 
-def _roundoff(setting: Setting) -> Array:
+def _roundoff(setting: Setting) -> Floats:
     """Norms (N, k) of Hessians that round-off can make."""
     values = np.abs(setting.samples.columns)
     if setting.samples.space == "P0":

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Floats
 from ..patches.fit import Fits, fit_patches
 from ..patches.noise import NOISE_MARGIN, hessian_norm
 from .setting import Setting
-
-Array = NDArray[np.float64]
 
 MEASURABLE_NOISE = 2e-15
 """Noise relative to the values from which it is more than round-off."""
@@ -21,13 +19,13 @@ LARGEST_GROWTH = {2: 3, 3: 1}
 """Highest level to which patches are grown against noise, by dimension: some hundred samples."""
 
 
-def is_measurable(setting: Setting, noise: Array) -> bool:
+def is_measurable(setting: Setting, noise: Floats) -> bool:
     """Whether the noise (k,) of a field is more than round-off."""
     size = np.abs(setting.samples.columns).max(axis=0, initial=0.0)
     return bool((noise > MEASURABLE_NOISE * size).any())
 
 
-def grow_against_noise(setting: Setting, fits: Fits, noise: Array) -> None:
+def grow_against_noise(setting: Setting, fits: Fits, noise: Floats) -> None:
     """Take larger patches where the signal is weak and the larger patch does not deny it.
 
     A larger patch has less noise and more features that a quadratic cannot follow. It is taken

@@ -8,17 +8,15 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ...arrays import Bools, Floats
 from ...kernels.elementary import log
 from ...kernels.graph import pair_graph
 from ..patches.fit import SMALLEST_PIVOT, Cloud, fit_patches
 from ..patches.least_squares import LAST_PIVOT
 from ..samples.cells import CellGeometry
 from ..samples.spaces import QuadraticCells
-
-Array = NDArray[np.float64]
 
 MASS_DIGITS = 1e-13
 """Relative error to which consistent mass matrices are solved."""
@@ -27,10 +25,10 @@ MASS_DIGITS = 1e-13
 class Projection(Protocol):
     """Turns functions that are known in the cells into point values."""
 
-    def constants(self, values: Array) -> Array:
+    def constants(self, values: Floats) -> Floats:
         """Point values (n, q) of functions that are constant (m, q) in the cells."""
 
-    def gradients(self, cells: QuadraticCells) -> Array:
+    def gradients(self, cells: QuadraticCells) -> Floats:
         """Gradients (n, k, d) at the points of P2 functions."""
 
 
@@ -49,11 +47,11 @@ class L2Projection:
     geometry: CellGeometry
     is_consistent: bool
 
-    def constants(self, values: Array) -> Array:
+    def constants(self, values: Floats) -> Floats:
         """Point values (n, q) of functions that are constant (m, q) in the cells."""
         return self.solved(np.asarray(self.geometry.integration @ values))
 
-    def gradients(self, cells: QuadraticCells) -> Array:
+    def gradients(self, cells: QuadraticCells) -> Floats:
         """Gradients (n, k, d) at the points of P2 functions."""
         geometry, corners = self.geometry, np.eye(self.geometry.cells.shape[1])
         m, n_corners = geometry.cells.shape
@@ -72,7 +70,7 @@ class L2Projection:
             right += geometry.integration @ (total / (n_corners + 1))
         return self.solved(right).reshape(shape)
 
-    def solved(self, right: Array) -> Array:
+    def solved(self, right: Floats) -> Floats:
         """Solve the mass matrix for the integrals `right` (n, q) against the hat functions.
 
         The spectrum of the consistent matrix relative to the lumped one is within
@@ -103,7 +101,7 @@ class L2Projection:
             rho = new_rho
         return x
 
-    def _times_mass(self, x: Array) -> Array:
+    def _times_mass(self, x: Floats) -> Floats:
         cells, mass = self.geometry.cells, self.geometry.mass
         total = np.sum([x[corner] for corner in cells.T], axis=0)
         product = self.geometry.integration @ total + mass[:, None] * x
@@ -135,7 +133,7 @@ class PatchProjection:
     def _neighbours(self) -> sparse.csr_array:
         return pair_graph(len(self.geometry.points), self.geometry.cells).matrix()
 
-    def constants(self, values: Array) -> Array:
+    def constants(self, values: Floats) -> Floats:
         """Point values (n, q) of functions that are constant (m, q) in the cells."""
         geometry = self.geometry
         if self.by_volume:
@@ -149,7 +147,7 @@ class PatchProjection:
             found[~fitted] = self.fallback.constants(values)[~fitted]
         return found
 
-    def gradients(self, cells: QuadraticCells) -> Array:
+    def gradients(self, cells: QuadraticCells) -> Floats:
         """Gradients (n, k, d) at the points of P2 functions."""
         places = _inner_places(self.geometry.cells.shape[1])
         sampled = [cells.gradients_at(place) for place in places]
@@ -162,8 +160,8 @@ class PatchProjection:
         return found
 
     def _fitted(
-        self, places: Array, sampled: list[Array], *, degree: int
-    ) -> tuple[Array, NDArray[np.bool_]]:
+        self, places: Floats, sampled: list[Floats], *, degree: int
+    ) -> tuple[Floats, Bools]:
         """Fit to the values (m, q) at places in the cells, given by barycentric coordinates."""
         geometry, many = self.geometry, len(places)
         corners = geometry.points[geometry.cells]
@@ -185,7 +183,7 @@ class PatchProjection:
         return fits.value, fits.level >= 0
 
 
-def _inner_places(corners: int) -> Array:
+def _inner_places(corners: int) -> Floats:
     """Points of the quadrature with one point near each corner, exact for quadratics."""
     near = {3: 2.0 / 3.0, 4: (5.0 + 3.0 * math.sqrt(5.0)) / 20.0}[corners]
     places = np.full((corners, corners), (1.0 - near) / (corners - 1))

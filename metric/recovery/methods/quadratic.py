@@ -10,15 +10,13 @@ References
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ...arrays import Ints
 from ...kernels.graph import VertexGraph
 from ..patches.fit import Cloud
 from ..samples.cells import CellGeometry
 from ..samples.spaces import Samples, cell_nodes
-
-Array = NDArray[np.float64]
 
 
 def quadratic_cloud(geometry: CellGeometry, graph: VertexGraph, samples: Samples) -> Cloud:
@@ -57,7 +55,7 @@ def quadratic_cloud(geometry: CellGeometry, graph: VertexGraph, samples: Samples
     )
 
 
-def _table(members: NDArray[np.int32], n_columns: int) -> sparse.csr_array:
+def _table(members: Ints, n_columns: int) -> sparse.csr_array:
     """Matrix with a one for each entry of `members` (m, c) in its row."""
     m, count = members.shape
     ones = np.ones(m * count, dtype=np.int32)

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Floats
 from ...kernels.gradation import wide_graph
 from ...kernels.graph import VertexGraph
 from ...mesh import MeshLike
@@ -20,8 +18,6 @@ from ..samples.spaces import QuadraticCells, Samples, on_cut, quadratic_cells
 from .boundary import Boundary, boundary_of
 from .projection import L2Projection, PatchProjection, Projection
 from .quadratic import quadratic_cloud
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +98,7 @@ class Setting:
         by_volume = self.method == "clement"
         return PatchProjection(geometry=self.geometry, by_volume=by_volume, fallback=l2)
 
-    def bounded(self, values: Array) -> Array:
+    def bounded(self, values: Floats) -> Floats:
         """Apply the boundary treatment to point values (n, ...)."""
         return self.boundary.extrapolated(values) if self.is_extrapolated else values
 

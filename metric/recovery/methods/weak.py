@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Floats, Ints
 from ..samples.cells import CellGeometry, boundary_sides
 
-Array = NDArray[np.float64]
 
-
-def weak_hessian(geometry: CellGeometry, in_cells: Array, at_boundary: Array | None) -> Array:
+def weak_hessian(geometry: CellGeometry, in_cells: Floats, at_boundary: Floats | None) -> Floats:
     """Integrals (n, k, d, d) of the Hessian against the hat functions.
 
     ``int H phi = - int grad u (x) grad phi + int_boundary grad u (x) n phi``, symmetrised.
@@ -54,6 +52,6 @@ def weak_hessian(geometry: CellGeometry, in_cells: Array, at_boundary: Array | N
     return np.asarray(0.5 * (H + H.transpose(0, 1, 3, 2)))
 
 
-def _add(total: Array, points: NDArray[np.int32], values: Array) -> None:
+def _add(total: Floats, points: Ints, values: Floats) -> None:
     for q, column in enumerate(values.T):
         total[:, q] += np.bincount(points, column, minlength=len(total))

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from itertools import combinations_with_replacement
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ...arrays import AnyArray, Bools, Floats, Ints
 from ...kernels.algebra import eigh
 from ...kernels.spectra import product
 from .least_squares import Equations, factored, gain, residual, solved
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 PATCH_LEVELS = 4
@@ -59,12 +58,12 @@ class Cloud:
         Values at the vertices; the fits then pass through them.
     """
 
-    positions: Array
-    values: Array
+    positions: Floats
+    values: Floats
     first: sparse.csr_array
-    spread: Array | None = None
-    weights: Array | None = None
-    at_vertices: Array | None = None
+    spread: Floats | None = None
+    weights: Floats | None = None
+    at_vertices: Floats | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,23 +89,23 @@ class Fits:
         Standard deviation that the fit leaves, NaN where there are too few samples to say.
     """
 
-    value: Array
-    gradient: Array
-    hessian: Array
-    pivot: Array
+    value: Floats
+    gradient: Floats
+    hessian: Floats
+    pivot: Floats
     level: NDArray[np.int8]
-    covariance: Array
-    gain: Array
-    residual: Array
+    covariance: Floats
+    gain: Floats
+    residual: Floats
 
-    def put(self, where: Rows, other: Fits, chosen: NDArray[np.bool_]) -> None:
+    def put(self, where: Rows, other: Fits, chosen: Bools) -> None:
         """Overwrite the fits at `where` by the chosen ones of `other`."""
         for array in fields(self):
             getattr(self, array.name)[where] = getattr(other, array.name)[chosen]
 
 
 def fit_patches(
-    points: Array,
+    points: Floats,
     cloud: Cloud,
     neighbours: sparse.csr_array,
     *,
@@ -211,19 +210,19 @@ class _Patches:
 
     rows: Rows
     starts: NDArray[np.intp]
-    counts: NDArray[np.int32]
-    members: NDArray[np.int32]
-    covariance: Array
-    scaling: Array
-    xi: Array
+    counts: Ints
+    members: Ints
+    covariance: Floats
+    scaling: Floats
+    xi: Floats
 
 
 def _scaled_patches(
-    points: Array,
+    points: Floats,
     cloud: Cloud,
     rows: Rows,
     patches: sparse.csr_array,
-    enough: NDArray[np.bool_],
+    enough: Bools,
 ) -> _Patches:
     sizes = np.diff(patches.indptr)
     counts, members = sizes[enough], patches.indices[np.repeat(enough, sizes)]
@@ -244,7 +243,7 @@ def _scaled_patches(
 
 
 def _fit(
-    points: Array,
+    points: Floats,
     cloud: Cloud,
     rows: Rows,
     patches: sparse.csr_array,
@@ -287,7 +286,7 @@ def _fit(
     return fits
 
 
-def _base(around: _Patches, cloud: Cloud) -> Array:
+def _base(around: _Patches, cloud: Cloud) -> Floats:
     """Values (r, k) that the fits are the rise from: at the vertices, or means of the samples."""
     if cloud.at_vertices is not None:
         return np.asarray(cloud.at_vertices[around.rows])
@@ -295,7 +294,7 @@ def _base(around: _Patches, cloud: Cloud) -> Array:
     return np.asarray(sums / around.counts[:, None])
 
 
-def _hessians(second: Array, pairs: list[tuple[int, int]], scaling: Array) -> Array:
+def _hessians(second: Floats, pairs: list[tuple[int, int]], scaling: Floats) -> Floats:
     """Hessians (r, k, d, d) from the second derivatives in scaled coordinates."""
     k, r = second.shape[1:]
     d = scaling.shape[1]
@@ -306,7 +305,7 @@ def _hessians(second: Array, pairs: list[tuple[int, int]], scaling: Array) -> Ar
     return product(product(S, local), S)
 
 
-def _scaled(v: Array, scaling: Array, counts: NDArray[np.int32]) -> Array:
+def _scaled(v: Floats, scaling: Floats, counts: Ints) -> Floats:
     """Vectors (d, s) in the coordinates of their patches."""
     d = v.shape[1]
     xi = np.zeros((d, len(v)))
@@ -319,7 +318,7 @@ def _scaled(v: Array, scaling: Array, counts: NDArray[np.int32]) -> Array:
     return xi
 
 
-def _basis(around: _Patches, cloud: Cloud, pairs: list[tuple[int, int]]) -> list[Array]:
+def _basis(around: _Patches, cloud: Cloud, pairs: list[tuple[int, int]]) -> list[Floats]:
     """Basis functions at the samples, such that coefficients are derivatives."""
     xi = around.xi
     basis = [*xi, *(xi[i] * xi[j] * (0.5 if i == j else 1.0) for i, j in pairs)]
@@ -333,17 +332,17 @@ def _basis(around: _Patches, cloud: Cloud, pairs: list[tuple[int, int]]) -> list
     return basis
 
 
-def _weight(around: _Patches, cloud: Cloud) -> Array:
+def _weight(around: _Patches, cloud: Cloud) -> Floats:
     if cloud.weights is not None:
         return np.asarray(cloud.weights[around.members])
-    distance: Array = np.square(around.xi).sum(axis=0)
+    distance: Floats = np.square(around.xi).sum(axis=0)
     if cloud.at_vertices is None:
         return np.asarray(1.0 / (1.0 + distance))
     # the vertex itself may be a member: its equation is 0 = 0 and must weigh nothing
     return np.divide(1.0, distance, out=np.zeros_like(distance), where=distance > 0.0)
 
 
-def covariances(v: Array, starts: NDArray[Any], counts: NDArray[Any]) -> Array:
+def covariances(v: Floats, starts: AnyArray, counts: AnyArray) -> Floats:
     """Means (r, d, d) of ``v v^T`` over consecutive vectors (s, d)."""
     d = v.shape[1]
     result = np.empty((len(starts), d, d))
@@ -354,7 +353,7 @@ def covariances(v: Array, starts: NDArray[Any], counts: NDArray[Any]) -> Array:
     return result
 
 
-def _inverse_root(covariance: Array) -> Array:
+def _inverse_root(covariance: Floats) -> Floats:
     values, vectors = eigh(covariance)
     values = np.maximum(values, FLATTEST_PATCH * values[:, -1:])
     root = vectors / np.sqrt(values)[:, None, :]

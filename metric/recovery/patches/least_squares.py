@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...arrays import Floats, Ints
 
 LAST_PIVOT = 1e-8
 """No pivot is taken to be smaller: half of the digits are left. Also the last resort of a fit."""
@@ -29,10 +29,10 @@ class Equations:
         Where the equations of each patch begin, and how many they are.
     """
 
-    basis: list[Array]
-    weight: Array
+    basis: list[Floats]
+    weight: Floats
     starts: NDArray[np.intp]
-    counts: NDArray[np.int32]
+    counts: Ints
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,9 +48,9 @@ class Factor:
         The smallest pivots.
     """
 
-    lower: Array
-    scale: Array
-    pivot: Array
+    lower: Floats
+    scale: Floats
+    pivot: Floats
 
 
 def factored(equations: Equations) -> Factor:
@@ -78,7 +78,7 @@ def factored(equations: Equations) -> Factor:
     return Factor(lower=normal, scale=scale, pivot=pivot)
 
 
-def solved(equations: Equations, factor: Factor, values: Array) -> Array:
+def solved(equations: Equations, factor: Factor, values: Floats) -> Floats:
     """Coefficients (b, k, r) of the functions with the values (k, s) at the samples."""
     right = np.empty((len(equations.basis), len(values), len(equations.starts)))
     for a, phi in enumerate(equations.basis):
@@ -90,8 +90,8 @@ def solved(equations: Equations, factor: Factor, values: Array) -> Array:
 
 
 def gain(
-    equations: Equations, factor: Factor, response: Array, pairs: list[tuple[int, int]]
-) -> Array:
+    equations: Equations, factor: Factor, response: Floats, pairs: list[tuple[int, int]]
+) -> Floats:
     """Root mean squares (r,) of the second derivatives that noise of the samples makes.
 
     `pairs` are the derivatives that the last coefficients stand for, `response` (b, r) the
@@ -114,7 +114,7 @@ def gain(
     return np.asarray(np.sqrt(square))
 
 
-def residual(equations: Equations, coefficients: Array, values: Array) -> Array:
+def residual(equations: Equations, coefficients: Floats, values: Floats) -> Floats:
     """Return the standard deviations (r, k) that the fits leave, NaN with too few samples."""
     left, counts = values.copy(), equations.counts
     for phi, c in zip(equations.basis, coefficients, strict=True):
@@ -126,7 +126,7 @@ def residual(equations: Equations, coefficients: Array, values: Array) -> Array:
     return np.asarray(np.where(enough, np.sqrt(variance), np.nan).T)
 
 
-def _substituted(L: Array, right: Array) -> Array:
+def _substituted(L: Floats, right: Floats) -> Floats:
     """Solve ``L L^T x = right`` for all patches, L (b, b, r) lower, right (b, k, r)."""
     x, size = right, len(L)
     for a in range(size):

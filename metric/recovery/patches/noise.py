@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ...arrays import Floats
 from ...kernels.algebra import determinant, eigh, forward_substituted, lower_factor
 from ...kernels.elementary import power
 from ...kernels.spectra import compose, product
 from .fit import Cloud, fit_patches
-
-Array = NDArray[np.float64]
 
 ROUNDOFF = 64.0 * float(np.finfo(np.float64).eps)
 """A second difference of values of size |u| over a distance h is uncertain by 4 eps |u| / h**2;
@@ -44,7 +42,9 @@ P2_NOISE_GAIN = 60.0
 apart as the points."""
 
 
-def estimated_noise(points: Array, cloud: Cloud, neighbours: sparse.csr_array, level: int) -> Array:
+def estimated_noise(
+    points: Floats, cloud: Cloud, neighbours: sparse.csr_array, level: int
+) -> Floats:
     """Estimate the standard deviations (k,) of the noise of the samples of a cloud.
 
     A quadratic over a patch leaves noise of the values and the third differences of a smooth
@@ -81,7 +81,7 @@ def estimated_noise(points: Array, cloud: Cloud, neighbours: sparse.csr_array, l
     return noise
 
 
-def hessian_norm(H: Array, covariance: Array) -> Array:
+def hessian_norm(H: Floats, covariance: Floats) -> Floats:
     """Norms (n, k) of Hessians (n, k, d, d): second differences over patches.
 
     This is the Frobenius norm in coordinates in which the patch has the covariance one, so that
@@ -92,7 +92,7 @@ def hessian_norm(H: Array, covariance: Array) -> Array:
     return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
 
-def without_roundoff(H: Array, covariance: Array, bound: Array) -> Array:
+def without_roundoff(H: Floats, covariance: Floats, bound: Floats) -> Floats:
     """Set eigenvalues of Hessians (n, k, d, d) to zero that round-off alone can make.
 
     They are taken in coordinates in which the patch has the covariance one, where an eigenvalue
@@ -111,19 +111,19 @@ def without_roundoff(H: Array, covariance: Array, bound: Array) -> Array:
     return found.reshape(H.shape)
 
 
-def _seen_from(L: Array, T: Array) -> Array:
+def _seen_from(L: Floats, T: Floats) -> Floats:
     """Return ``L^T T L``, symmetric."""
     S = product(L.transpose(0, 2, 1), product(T, L))
     return np.asarray(0.5 * (S + S.transpose(0, 2, 1)))
 
 
-def _inverse(L: Array) -> Array:
+def _inverse(L: Floats) -> Floats:
     """Inverses of lower triangular matrices (n, d, d)."""
     identity = np.broadcast_to(np.eye(L.shape[-1]), L.shape)
     return forward_substituted(L, identity)
 
 
-def damped(H: Array, covariance: Array, threshold: Array) -> Array:
+def damped(H: Floats, covariance: Floats, threshold: Floats) -> Floats:
     """Reduce Hessians (n, k, d, d) to what rises above the noise.
 
     They are multiplied by ``max(0, 1 - (threshold / norm)^2)``, which is zero below the

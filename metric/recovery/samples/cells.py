@@ -10,12 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ...arrays import Floats, Ints, Longs
 from ...kernels.spectra import product
 from ...mesh import MeshLike, point_volumes
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int32]
-
 
 BLOCK = 32768
 """Cells treated at once, so that the arrays of a block stay in the cache."""
@@ -38,11 +35,11 @@ class CellGeometry:
         Lumped mass of the points.
     """
 
-    points: Array
-    cells: Index
-    volumes: Array
-    slopes: Array
-    mass: Array
+    points: Floats
+    cells: Ints
+    volumes: Floats
+    slopes: Floats
+    mass: Floats
 
     @cached_property
     def integration(self) -> sparse.csc_array:
@@ -62,11 +59,11 @@ class CellGeometry:
         return sparse.csr_array(matrix)
 
     @property
-    def centroids(self) -> Array:
+    def centroids(self) -> Floats:
         """Centroids (m, d) of the cells."""
         return self.points[self.cells].mean(axis=1)
 
-    def gradients(self, columns: Array) -> Array:
+    def gradients(self, columns: Floats) -> Floats:
         """Gradients (m, k, d) in the cells of P1 fields (n, k)."""
         gradients = np.empty((len(self.cells), columns.shape[1], self.points.shape[1]))
         for start in range(0, len(self.cells), BLOCK):
@@ -76,7 +73,7 @@ class CellGeometry:
             gradients[part] = product(rise.transpose(0, 2, 1), self.slopes[part])
         return gradients
 
-    def slope(self, corner: int) -> Array:
+    def slope(self, corner: int) -> Floats:
         """Gradient (m, d) of the barycentric coordinate of a corner."""
         return self.slopes[:, corner - 1] if corner else -self.slopes.sum(axis=1)
 
@@ -97,7 +94,7 @@ def cell_geometry(mesh: MeshLike) -> CellGeometry:
     )
 
 
-def _slopes(corners: Array) -> tuple[Array, Array]:
+def _slopes(corners: Floats) -> tuple[Floats, Floats]:
     """Volumes and gradients of the barycentric coordinates of cells (m, d + 1, d)."""
     edges = (corners[:, 1:] - corners[:, :1]).transpose(1, 2, 0).copy()
     d = len(edges)
@@ -114,7 +111,7 @@ def _slopes(corners: Array) -> tuple[Array, Array]:
     return np.abs(det) / (2.0 if d == 2 else 6.0), slopes.transpose(2, 0, 1)
 
 
-def boundary_facets(cells: Index, n_points: int) -> Index:
+def boundary_facets(cells: Ints, n_points: int) -> Ints:
     """Facets (f, d) that belong to one cell only, their points increasing."""
     dim, faces = cells.shape[1] - 1, _faces(_sorted_corners(cells))
     if int(n_points) ** dim >= 2**63:
@@ -159,7 +156,7 @@ def boundary_sides(geometry: CellGeometry) -> list[tuple[NDArray[np.intp], int]]
     return sides
 
 
-def _sorted_corners(cells: Index) -> list[Index]:
+def _sorted_corners(cells: Ints) -> list[Ints]:
     """Corners of the cells in increasing order, as columns: bubble sort of three or four."""
     columns = [column.copy() for column in cells.T]
     for last in range(len(columns) - 1, 0, -1):
@@ -170,12 +167,12 @@ def _sorted_corners(cells: Index) -> list[Index]:
     return columns
 
 
-def _faces(corners: list[Index]) -> list[tuple[Index, ...]]:
+def _faces(corners: list[Ints]) -> list[tuple[Ints, ...]]:
     dim = len(corners) - 1
     return [tuple(corners[i] for i in face) for face in combinations(range(dim + 1), dim)]
 
 
-def _lonely(rows: NDArray[np.int64] | Index) -> NDArray[np.int64]:
+def _lonely(rows: Longs | Ints) -> Longs:
     """Rows of a sorted table that occur once."""
     same = (rows[1:] == rows[:-1]).all(axis=1)
     once = np.ones(len(rows), dtype=bool)

@@ -15,12 +15,10 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
+from ...arrays import Bools, Floats, Ints
 from ...kernels.algebra import absolute, eigenvalues
 from ...mesh import MeshLike
 from ...tensors.combination import intersected
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int32]
 
 Number = TypeVar("Number", np.int8, np.float64)
 
@@ -43,12 +41,12 @@ class CutMesh:
         Number of points of the given mesh.
     """
 
-    points: Array
-    cells: Index
-    cell_tags: Index
-    facets: Index
-    facet_tags: Index
-    origin: Index
+    points: Floats
+    cells: Ints
+    cell_tags: Ints
+    facets: Ints
+    facet_tags: Ints
+    origin: Ints
     n_given: int
 
 
@@ -71,7 +69,7 @@ def cut_open(mesh: MeshLike, *, interfaces: bool) -> CutMesh:
     )
 
 
-def joined_gradients(cut: CutMesh, gradients: Array, mass: Array) -> Array:
+def joined_gradients(cut: CutMesh, gradients: Floats, mass: Floats) -> Floats:
     """Gradients (n, k, d) of the given mesh: means of the sides', weighted by their mass."""
     if len(cut.origin) == cut.n_given:
         return gradients
@@ -81,7 +79,7 @@ def joined_gradients(cut: CutMesh, gradients: Array, mass: Array) -> Array:
     return np.stack(columns, axis=1).reshape(-1, *gradients.shape[1:])
 
 
-def joined_hessians(cut: CutMesh, H: Array) -> Array:
+def joined_hessians(cut: CutMesh, H: Floats) -> Floats:
     """Hessians (n, k, d, d) of the given mesh; on interfaces, ``|H|`` of the sides intersected.
 
     More than two sides are intersected in the order of the cut mesh.
@@ -105,7 +103,7 @@ def joined_worst(cut: CutMesh, values: NDArray[Number], *, largest: bool) -> NDA
     return result
 
 
-def _intersected(A: Array, B: Array) -> Array:
+def _intersected(A: Floats, B: Floats) -> Floats:
     shape = A.shape
     A, B = A.reshape(-1, *shape[2:]), B.reshape(-1, *shape[2:])
     size = np.maximum(np.abs(eigenvalues(A)).max(axis=1), np.abs(eigenvalues(B)).max(axis=1))
@@ -115,7 +113,7 @@ def _intersected(A: Array, B: Array) -> Array:
     return both.reshape(shape)
 
 
-def _on_interfaces(mesh: MeshLike) -> NDArray[np.bool_]:
+def _on_interfaces(mesh: MeshLike) -> Bools:
     """Mask (n,) of the points of inner facets between regions or listed in the mesh."""
     n = len(mesh.points)
     touching = np.zeros(n, dtype=bool)
@@ -137,7 +135,7 @@ def _on_interfaces(mesh: MeshLike) -> NDArray[np.bool_]:
     return touching
 
 
-def _separated(mesh: MeshLike, touching: NDArray[np.bool_]) -> tuple[Index, Index]:
+def _separated(mesh: MeshLike, touching: Bools) -> tuple[Ints, Ints]:
     """Cells with one point for each side of an interface, and the origins of the new points."""
     n, corners = len(mesh.points), mesh.cells.shape[1]
     near = np.flatnonzero(touching[mesh.cells].any(axis=1))
@@ -185,12 +183,12 @@ def _open_faces(
     return first[is_open], second[is_open]
 
 
-def _faces(cells: Index) -> list[Index]:
+def _faces(cells: Ints) -> list[Ints]:
     corners = range(cells.shape[1])
     return [cells[:, list(face)] for face in combinations(corners, len(corners) - 1)]
 
 
-def _labels(facets: Index) -> NDArray[np.intp]:
+def _labels(facets: Ints) -> NDArray[np.intp]:
     """Equal labels (f,) for facets with the same points."""
     rows = np.sort(facets, axis=1)
     order = np.lexsort(rows.T[::-1])

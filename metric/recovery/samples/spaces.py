@@ -10,19 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...arrays import Floats, Ints
 from ...kernels.graph import mesh_edges
 from ...mesh import MeshLike
 from ...tensors.checks import check_values
 from .cells import CellGeometry
 from .cut_mesh import CutMesh
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int32]
-
 SPACES = ("P1", "P2", "P0")
 
 
-def p2_nodes(mesh: MeshLike) -> Array:
+def p2_nodes(mesh: MeshLike) -> Floats:
     """Nodes (n + e, d) of quadratic elements, in the order in which P2 values are passed.
 
     The points of the mesh come first, then the midpoints of its edges in the order of
@@ -37,9 +35,9 @@ class Samples:
     """Values (s, k) of k functions in one space; `edges` are those of the mesh for P2."""
 
     space: str
-    columns: Array
+    columns: Floats
     is_scalar: bool
-    edges: Index | None = None
+    edges: Ints | None = None
 
 
 def read_samples(mesh: MeshLike, u: Any, *, space: str | None, name: str = "u") -> Samples:
@@ -102,7 +100,7 @@ def on_cut(samples: Samples, cut: CutMesh) -> Samples:
     )
 
 
-def cell_nodes(cells: Index, edges: Index, n_points: int) -> Index:
+def cell_nodes(cells: Ints, edges: Ints, n_points: int) -> Ints:
     """P2 nodes (m, 3 or 6) on the edges of each cell, in the order of `combinations`."""
     pairs = list(combinations(range(cells.shape[1]), 2))
     columns = [_edge_numbers(edges, cells[:, pair], n_points) for pair in pairs]
@@ -138,10 +136,10 @@ class QuadraticCells:
     """
 
     geometry: CellGeometry
-    gradient: Array
-    bubbles: dict[tuple[int, int], Array]
+    gradient: Floats
+    bubbles: dict[tuple[int, int], Floats]
 
-    def gradients_at(self, corner_weights: Array) -> Array:
+    def gradients_at(self, corner_weights: Floats) -> Floats:
         """Gradients (m, k, d) at the place with these barycentric coordinates (d + 1,)."""
         gradients = self.gradient.copy()
         for (i, j), c in self.bubbles.items():
@@ -150,7 +148,7 @@ class QuadraticCells:
             gradients += c[:, :, None] * slope[:, None, :]
         return gradients
 
-    def hessians(self) -> Array:
+    def hessians(self) -> Floats:
         """Hessians (m, k, d, d), constant in each cell."""
         m, k, d = self.gradient.shape
         H = np.zeros((m, k, d, d))
@@ -191,7 +189,7 @@ def grouped(fields: Mapping[str, Samples]) -> list[tuple[list[tuple[str, slice]]
     return groups
 
 
-def _edge_numbers(edges: Index, pairs: Index, n_points: int) -> NDArray[np.intp]:
+def _edge_numbers(edges: Ints, pairs: Ints, n_points: int) -> NDArray[np.intp]:
     """Positions in the sorted table `edges` of pairs of points."""
     key = edges[:, 0].astype(np.int64) * n_points + edges[:, 1]
     low, high = pairs.min(axis=1).astype(np.int64), pairs.max(axis=1)

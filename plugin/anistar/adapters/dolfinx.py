@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
 from . import dolfinx_wheel
@@ -25,8 +26,6 @@ try:
 except ImportError as error:
     error.add_note("anistar's dolfinx adapter needs it: pip install 'anistar[dolfinx]'")
     raise
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +87,7 @@ def to_dolfinx(mesh: Mesh) -> DolfinxMesh:
     )
 
 
-def _mesh_tags(domain: Any, simplices: NDArray[np.int32], tags: NDArray[np.int32]) -> Any:
+def _mesh_tags(domain: Any, simplices: Ints, tags: Ints) -> Any:
     """Return the tags of facets, edges or vertices that are given by their points."""
     dim = simplices.shape[1] - 1
     known = _entities(domain, dim)
@@ -164,7 +163,7 @@ def from_dolfinx(
     return Mesh(points=points, cells=cells, cell_tags=tags, names=names or {}, **marked)
 
 
-def point_values(function: Any) -> Float:
+def point_values(function: Any) -> Floats:
     """Return the values of a P1 function at the points of the mesh.
 
     Parameters
@@ -214,7 +213,7 @@ def _value_shape(space: Any) -> tuple[int, ...]:
     return shape
 
 
-def _p1_maps(space: Any) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def _p1_maps(space: Any) -> tuple[Ints, Ints]:
     nodes, dofs = space.mesh.geometry.dofmaps[0], space.dofmap.list
     dim = space.mesh.topology.dim
     if dofs.shape != nodes.shape or space.dofmap.index_map.size_local != len(space.mesh.geometry.x):
@@ -222,7 +221,7 @@ def _p1_maps(space: Any) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     return nodes, dofs
 
 
-def _entities(domain: Any, dim: int) -> NDArray[np.int32]:
+def _entities(domain: Any, dim: int) -> Ints:
     """Return the points of every facet, edge or vertex, as numbered when they were given."""
     domain.topology.create_entities(dim)
     domain.topology.create_connectivity(dim, domain.topology.dim)

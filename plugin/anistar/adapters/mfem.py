@@ -10,8 +10,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants
 
@@ -24,10 +25,8 @@ except ImportError as error:
 _TRIANGLE, _TETRAHEDRON = 2, 4  # mfem::Element::Type
 _BY_NODES = 0  # mfem::Ordering::byNODES
 
-Float = NDArray[np.float64]
 
-
-def attributes(tags: NDArray[np.int32]) -> NDArray[np.int32]:
+def attributes(tags: Ints) -> Ints:
     """Return the MFEM attributes of (k,) tags: the same if positive, else further numbers."""
     positive = tags > 0
     if positive.all():
@@ -103,7 +102,7 @@ def from_mfem(other: Any) -> Mesh:
     )
 
 
-def point_values(function: Any) -> Float:
+def point_values(function: Any) -> Floats:
     """Return the values of a `GridFunction` at the points of the mesh.
 
     Parameters
@@ -145,7 +144,7 @@ def to_function(space: Any, values: ArrayLike) -> Any:
     return function
 
 
-def _nodal(space: Any, unknowns: Float) -> Float:
+def _nodal(space: Any, unknowns: Floats) -> Floats:
     """Return a view of the unknowns at the points, which come first."""
     if not space.FEColl().Name().startswith("H1_"):
         raise TypeError(f"the space is no H1: {space.FEColl().Name()}")

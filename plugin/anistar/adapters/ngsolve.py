@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import AnyArray, Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants
 
@@ -18,7 +19,6 @@ except ImportError as error:
     error.add_note("anistar's NGSolve adapter needs it: pip install 'anistar[ngsolve]'")
     raise
 
-Float = NDArray[np.float64]
 
 _CORNER = "corner"
 _NAMELESS = ("", "default")
@@ -86,7 +86,7 @@ def from_ngsolve(other: Any) -> Mesh:
     )
 
 
-def point_values(function: Any) -> Float:
+def point_values(function: Any) -> Floats:
     """Return the values of a `GridFunction` at the points of the mesh.
 
     Parameters
@@ -140,7 +140,7 @@ def to_function(space: Any, values: ArrayLike) -> Any:
     return function
 
 
-def _nodal(function: Any) -> Float:
+def _nodal(function: Any) -> Floats:
     """Return a view of the unknowns at the points, which come first."""
     space = function.space
     if space.type != "h1ho" or space.ndof < space.mesh.nv:
@@ -152,7 +152,7 @@ def _nodal(function: Any) -> Float:
 
 def _ridges(
     other: Any,
-) -> tuple[NDArray[np.int32], NDArray[np.int32], dict[tuple[int, int], str]]:
+) -> tuple[Ints, Ints, dict[tuple[int, int], str]]:
     """Return the points, tags and names of the edges in space that have a name."""
     if other.dim == 2:
         return np.zeros((0, 2), np.int32), np.zeros(0, np.int32), {}
@@ -162,7 +162,7 @@ def _ridges(
     return rows[own], tags[own], kept
 
 
-def _corners(other: Any) -> NDArray[np.int32]:
+def _corners(other: Any) -> Ints:
     stratum = ngsolve.BBND if other.dim == 2 else ngsolve.BBBND
     named = [
         element.vertices[0].nr
@@ -173,8 +173,8 @@ def _corners(other: Any) -> NDArray[np.int32]:
 
 
 def _read(
-    elements: NDArray[Any], dim: int, called: tuple[str, ...]
-) -> tuple[NDArray[np.int32], NDArray[np.int32], dict[tuple[int, int], str]]:
+    elements: AnyArray, dim: int, called: tuple[str, ...]
+) -> tuple[Ints, Ints, dict[tuple[int, int], str]]:
     """Return the points, tags and names of elements of one dimension."""
     nodes = elements["nodes"]
     # Netgen counts nodes from 1; quadrilaterals and curved cells have more than a simplex.

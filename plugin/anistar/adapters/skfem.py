@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Floats, Ints, Longs
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
 
@@ -15,8 +16,6 @@ try:
 except ImportError as error:
     error.add_note("anistar's scikit-fem adapter needs it: pip install 'anistar[skfem]'")
     raise
-
-Float = NDArray[np.float64]
 
 
 def to_skfem(mesh: Mesh) -> Any:
@@ -79,7 +78,7 @@ def from_skfem(other: Any) -> Mesh:
     )
 
 
-def point_values(basis: Any, unknowns: ArrayLike) -> Float:
+def point_values(basis: Any, unknowns: ArrayLike) -> Floats:
     """Return the values of a solution at the points of the mesh.
 
     Parameters
@@ -103,7 +102,7 @@ def point_values(basis: Any, unknowns: ArrayLike) -> Float:
     return np.ascontiguousarray(values[:, 0] if values.shape[1] == 1 else values)
 
 
-def to_unknowns(basis: Any, values: ArrayLike) -> Float:
+def to_unknowns(basis: Any, values: ArrayLike) -> Floats:
     """Return the (N,) unknowns of a P1 basis that has (n,) or (n, c) values at the points.
 
     Raises
@@ -125,7 +124,7 @@ def to_unknowns(basis: Any, values: ArrayLike) -> Float:
     return unknowns
 
 
-def _nodal(basis: Any) -> NDArray[np.int64]:
+def _nodal(basis: Any) -> Longs:
     at_vertices = np.asarray(basis.nodal_dofs)
     if at_vertices.shape[0] == 0:
         raise TypeError(f"{type(basis.elem).__name__} has no unknowns at vertices")
@@ -134,7 +133,7 @@ def _nodal(basis: Any) -> NDArray[np.int64]:
 
 def _tagged(
     groups: dict[str, Any] | None, count: int, dim: int
-) -> tuple[NDArray[np.intp], NDArray[np.int32], dict[tuple[int, int], str]]:
+) -> tuple[NDArray[np.intp], Ints, dict[tuple[int, int], str]]:
     tags = np.zeros(count, np.int32)
     names: dict[tuple[int, int], str] = {}
     for tag, (name, members) in enumerate(sorted((groups or {}).items()), start=1):
@@ -147,7 +146,7 @@ def _tagged(
     return np.flatnonzero(tags), tags, names
 
 
-def _rows_of(table: NDArray[np.int32], facets: NDArray[np.int32], n: int) -> NDArray[np.int64]:
+def _rows_of(table: Ints, facets: Ints, n: int) -> Longs:
     """Return the row of each facet in a table of all facets."""
     encoder = RowKeys(table, n)
     keys = encoder.encode(table)
@@ -156,7 +155,7 @@ def _rows_of(table: NDArray[np.int32], facets: NDArray[np.int32], n: int) -> NDA
     return np.asarray(order[found], dtype=np.int64)
 
 
-def _shown(mesh: Mesh, dim: int, tags: NDArray[np.int32]) -> list[int]:
+def _shown(mesh: Mesh, dim: int, tags: Ints) -> list[int]:
     return [int(tag) for tag in np.unique(tags) if tag != 0 or (dim, 0) in mesh.names]
 
 

@@ -8,9 +8,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from ..arrays import Floats
 
 _NAMES = ("x", "y", "z")
 _CONSTANTS = {"pi": np.pi, "e": np.e}

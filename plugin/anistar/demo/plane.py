@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import pictures
+from ..arrays import Floats
 from ..judging.interpolation_error import l2_norm
 from ..loops.adapt import AdaptOptions, adapt
 from ..loops.loop import Loop, Step, adapt_loop
@@ -26,7 +26,6 @@ from ..transfer import transfer
 from .problem import EPSILON, channel, solve
 from .result import PICTURES, REPORT, Demo, DemoRow, columns_of, order_of
 
-Floats = NDArray[np.float64]
 Progress = Callable[[str], object]
 
 COMPLEXITIES = (500.0, 1000.0, 2000.0, 4000.0, 8000.0)

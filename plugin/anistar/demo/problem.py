@@ -13,9 +13,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
+from ..arrays import AnyArray, Bools, Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import boundary_facets
 
@@ -35,8 +35,6 @@ except ImportError as error:
     raise
 
 from ..adapters.skfem import to_skfem
-
-Floats = NDArray[np.float64]
 
 EPSILON = 1e-3
 ANGLE = math.radians(-12.0)
@@ -168,18 +166,18 @@ def _interior(size: float, boundary: Floats) -> Floats:
     return points[_is_inside(points) & (gaps > 0.6 * size)]
 
 
-def _is_inside(x: Floats) -> NDArray[np.bool_]:
+def _is_inside(x: Floats) -> Bools:
     in_step = (x[:, 0] < STEP_LENGTH) & (x[:, 1] < STEP_HEIGHT)
     in_circle = np.linalg.norm(x - CENTRE, axis=1) < RADIUS
     return np.asarray(~(in_step | in_circle))
 
 
-def _positive(points: Floats, cells: NDArray[Any]) -> NDArray[Any]:
+def _positive(points: Floats, cells: AnyArray) -> AnyArray:
     legs = points[cells[:, 1:]] - points[cells[:, :1]]
     return np.where((np.linalg.det(legs) < 0)[:, None], cells[:, [0, 2, 1]], cells)
 
 
-def _side_of(middles: Floats) -> NDArray[np.int32]:
+def _side_of(middles: Floats) -> Ints:
     x, y = middles.T
     tags = np.full(len(middles), 2, np.int32)
     tags[x == 0] = 1

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..judging.interpolation_error import l2_error
 from ..loops.loop import Step, adapt_loop
 from ..loops.loop_options import LoopOptions
@@ -19,7 +19,6 @@ from ..report import write_json
 from ..runs.series import write_series
 from .result import REPORT, Demo, DemoRow, order_of
 
-Floats = NDArray[np.float64]
 Progress = Callable[[str], object]
 
 COMPLEXITIES = (500.0, 1000.0, 2000.0, 4000.0)

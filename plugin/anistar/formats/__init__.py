@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..atomic import replaced
 from ..errors import FormatError
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
-from ..meshes.topology import Float
 from . import inp_reader, meshio_writer, su2_reader, su2_writer, xdmf_reader
 from .content.assembly import ReadReport, assembled
 from .content.export import exported
@@ -153,7 +153,7 @@ def is_known(path: PathLike) -> bool:
     return suffix in (*_WRITERS, *SOLUTIONS) or meshio_writer.is_known(suffix)
 
 
-def read_metric(path: PathLike, mesh: Mesh) -> Float:
+def read_metric(path: PathLike, mesh: Mesh) -> Floats:
     """Read a metric at the points of a mesh.
 
     Parameters

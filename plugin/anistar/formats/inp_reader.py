@@ -16,7 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .content.raw import KIND_DIM, Array, Block, RawMesh
+from ..arrays import AnyArray
+from .content.raw import KIND_DIM, Block, RawMesh
 from .parsing.allowance import Allowance
 from .parsing.numbering import Numbering
 from .parsing.reading import reading
@@ -51,11 +52,11 @@ class _Content:
     """What was read so far; sets may be made of ranges and of other sets, which takes memory."""
 
     allowance: Allowance
-    nodes: list[Array] = field(default_factory=list)
+    nodes: list[AnyArray] = field(default_factory=list)
     kinds: list[str] = field(default_factory=list)
-    elements: list[Array] = field(default_factory=list)
-    of_elements: dict[str, list[Array]] = field(default_factory=dict)
-    sets: dict[str, list[Array]] = field(default_factory=dict)
+    elements: list[AnyArray] = field(default_factory=list)
+    of_elements: dict[str, list[AnyArray]] = field(default_factory=dict)
+    sets: dict[str, list[AnyArray]] = field(default_factory=dict)
     n_elements: int = 0
     spelled: dict[str, str] = field(default_factory=dict)
     respelled: list[str] = field(default_factory=list)
@@ -67,7 +68,7 @@ class _Content:
             self.respelled.append(f"{first!r} of {name[:_LONGEST_NAME]!r}")
         return first
 
-    def members(self, name: str) -> list[Array] | None:
+    def members(self, name: str) -> list[AnyArray] | None:
         """Return the elements in a set, None if there is none of this name."""
         first = self.spelled.get(name.upper(), name)
         return self.sets.get(first, self.of_elements.get(first))
@@ -144,7 +145,7 @@ def _parameters(text: str) -> dict[str, str]:
     return {name.strip().upper(): value.strip() for name, _, value in pairs if name.strip()}
 
 
-def _nodes(body: str) -> Array:
+def _nodes(body: str) -> AnyArray:
     first = body.strip().partition("\n")[0]
     width = len(first.strip().rstrip(",").split(","))
     if width not in (3, 4):
@@ -155,7 +156,7 @@ def _nodes(body: str) -> Array:
     return numbers.reshape(-1, width)
 
 
-def _members(content: _Content, body: str, *, is_generated: bool) -> Array:
+def _members(content: _Content, body: str, *, is_generated: bool) -> AnyArray:
     """Return the numbers of the elements in a set, which may be made of other sets."""
     words = [word.strip() for word in body.replace("\n", ",").split(",") if word.strip()]
     if words and not words[0].isdecimal():
@@ -181,14 +182,14 @@ def _members(content: _Content, body: str, *, is_generated: bool) -> Array:
     return np.concatenate(parts)
 
 
-def _numbers(keyword: str, body: str) -> Array:
+def _numbers(keyword: str, body: str) -> AnyArray:
     try:
         return parsed(body.replace(",", " "))
     except ValueError as error:
         raise ValueError(f"*{keyword} {error}") from error
 
 
-def _integers(keyword: str, body: str) -> Array:
+def _integers(keyword: str, body: str) -> AnyArray:
     numbers = _numbers(keyword, body)
     try:
         return integers(numbers)
@@ -220,7 +221,7 @@ def _raw(content: _Content) -> RawMesh:
     return raw
 
 
-def _tags(content: _Content, raw: RawMesh) -> Array:
+def _tags(content: _Content, raw: RawMesh) -> AnyArray:
     """Return the number of the last set that each element is in, and give the names to `raw`."""
     number = Numbering("element", np.concatenate([rows[:, 0] for rows in content.elements]))
     dims = np.concatenate(

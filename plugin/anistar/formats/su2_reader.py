@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..meshes.topology import Float
-from .content.raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh, not_read
+from ..arrays import AnyArray, Floats
+from .content.raw import KIND_DIM, KIND_OF_DIM, REFUSED, Block, RawMesh, not_read
 from .parsing.reading import reading
 from .parsing.text_rows import integers, parsed
 from .vtk.cells import KINDS
@@ -101,7 +101,7 @@ def _count(entry: Entry) -> int:
     return int(first[0])
 
 
-def _table(entry: Entry, widths: tuple[int, ...]) -> Float:
+def _table(entry: Entry, widths: tuple[int, ...]) -> Floats:
     """Return the rows of an entry; each has one of the given numbers of columns."""
     try:
         numbers = parsed(entry[2])
@@ -117,7 +117,7 @@ def _table(entry: Entry, widths: tuple[int, ...]) -> Float:
     )
 
 
-def _elements(entry: Entry, dim: int) -> Array:
+def _elements(entry: Entry, dim: int) -> AnyArray:
     """Return the points of the elements; their type comes first, a running number may end a row."""
     first = entry[2].split(None, 1)[:1]
     kind = KINDS.get(int(first[0]), "") if first and first[0].isdecimal() else ""
@@ -131,12 +131,12 @@ def _elements(entry: Entry, dim: int) -> Array:
     return table[:, 1 : nodes + 1]
 
 
-def _points(entry: Entry, dim: int) -> Float:
+def _points(entry: Entry, dim: int) -> Floats:
     return np.ascontiguousarray(_table(entry, (dim + 1, dim, dim + 2))[:, :dim])
 
 
-def _markers(entries: list[Entry], dim: int) -> list[tuple[str, Array]]:
-    found: list[tuple[str, Array]] = []
+def _markers(entries: list[Entry], dim: int) -> list[tuple[str, AnyArray]]:
+    found: list[tuple[str, AnyArray]] = []
     tag, seen = "", set()
     for entry in entries:
         if entry[0] == "MARKER_TAG":

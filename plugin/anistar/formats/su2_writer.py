@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Ints
 from ..atomic import replaced
 from ..errors import FormatError
 from ..meshes.fields import Field
@@ -47,7 +47,7 @@ def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
         temporary.write_text("".join(parts), encoding="utf-8")
 
 
-def _rows(dim: int, rows: NDArray[np.int32]) -> str:
+def _rows(dim: int, rows: Ints) -> str:
     """Return one line for each element: its type, its points, its number."""
     kinds = np.full(len(rows), _VTK_TYPE[dim])
     return printed(kinds, rows, np.arange(len(rows)))

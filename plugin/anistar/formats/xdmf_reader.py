@@ -15,7 +15,8 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from .content.raw import Array, Block, RawMesh
+from ..arrays import AnyArray
+from .content.raw import Block, RawMesh
 from .content.tag_arrays import read_tagged
 from .parsing.rows import leading_rows
 from .parsing.text_rows import parsed
@@ -91,7 +92,7 @@ def _mesh(data: bytes) -> RawMesh:
     return RawMesh(points, blocks, point_data=on_points, six="xdmf")
 
 
-def _points(geometry: Element) -> Array:
+def _points(geometry: Element) -> AnyArray:
     kind = geometry.get("GeometryType", geometry.get("Type", "XYZ"))
     if kind not in _DIMENSIONS:
         raise ValueError(f"the geometry {kind!r} is not known, only XY and XYZ")
@@ -101,7 +102,7 @@ def _points(geometry: Element) -> Array:
     return values
 
 
-def _cells(topology: Element) -> tuple[list[str], list[Array]]:
+def _cells(topology: Element) -> tuple[list[str], list[AnyArray]]:
     """Return runs of cells of one kind, and their points."""
     _check_topology(topology)
     kind = topology.get("TopologyType", topology.get("Type", "")).lower()
@@ -129,7 +130,7 @@ def _check_topology(topology: Element) -> None:
         )
 
 
-def _mixed(values: Array) -> tuple[list[str], list[Array]]:
+def _mixed(values: AnyArray) -> tuple[list[str], list[AnyArray]]:
     kinds, rows, at = [], [], 0
     while at < len(values):
         number = int(values[at])
@@ -146,8 +147,8 @@ def _mixed(values: Array) -> tuple[list[str], list[Array]]:
     return kinds, rows
 
 
-def _data(grid: Element, center: str, length: int) -> dict[str, Array]:
-    arrays: dict[str, Array] = {}
+def _data(grid: Element, center: str, length: int) -> dict[str, AnyArray]:
+    arrays: dict[str, AnyArray] = {}
     for element in grid.iterfind("Attribute"):
         if element.get("Center", "Node") not in ("Node", "Cell"):
             raise ValueError(f"an attribute lives on {element.get('Center')!r}, not Node or Cell")
@@ -163,7 +164,7 @@ def _data(grid: Element, center: str, length: int) -> dict[str, Array]:
     return arrays
 
 
-def _numbers(item: Element) -> Array:
+def _numbers(item: Element) -> AnyArray:
     form = item.get("Format", "XML")
     if form != "XML" or item.get("Reference") is not None or len(item):
         raise ValueError(

@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
@@ -14,10 +14,8 @@ from ..metric.kernels.algebra import congruent, eigenvalues, lower_factor
 from .certificate import Certificate
 from .quality import mean_ratios, metric_lengths
 
-Float = NDArray[np.float64]
 
-
-def cell_arrays(mesh: Mesh, M: Float, certificate: Certificate | None = None) -> dict[str, Field]:
+def cell_arrays(mesh: Mesh, M: Floats, certificate: Certificate | None = None) -> dict[str, Field]:
     """Return figures of every cell as fields on the cells.
 
     Parameters
@@ -56,6 +54,6 @@ def cell_arrays(mesh: Mesh, M: Float, certificate: Certificate | None = None) ->
     return fields
 
 
-def _distortions(M: Float, N: Float) -> Float:
+def _distortions(M: Floats, N: Floats) -> Floats:
     ratio = eigenvalues(congruent(lower_factor(M), N))
     return np.asarray(np.sqrt(np.maximum(ratio[:, -1], 1 / ratio[:, 0])))

@@ -8,17 +8,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .. import _core
+from ..arrays import Bools, Floats
 from ..core_errors import meshing_errors
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
 from ..metric.kernels.algebra import solved
 from ..report import as_builtin, attributes
-
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
 
 Count = tuple[int, int]
 """How many, of how many."""
@@ -68,14 +66,14 @@ class Certificate:
     .. [2] The same report, first version, section 3.
     """
 
-    simplex_ok: Bool
-    star_ok: Bool
-    distortion: Float
-    radius_edge: Float
-    sliverity: Float
-    exempt: Bool
+    simplex_ok: Bools
+    star_ok: Bools
+    distortion: Floats
+    radius_edge: Floats
+    sliverity: Floats
+    exempt: Bools
     verdict: str
-    delaunay: Bool
+    delaunay: Bools
     stars_without_interfaces: Count
     restricted_v1: Count
     restricted_v2: Count
@@ -227,7 +225,7 @@ def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, 
     return tuple(_explained(mesh, metric[vertex], int(cell)) for cell in cells)
 
 
-def _verdict(simplex_ok: Bool, star_ok: Bool, exempt: Bool) -> str:
+def _verdict(simplex_ok: Bools, star_ok: Bools, exempt: Bools) -> str:
     if star_ok.all():
         judgement = "certified"
     elif (star_ok | exempt).all():
@@ -240,12 +238,12 @@ def _verdict(simplex_ok: Bool, star_ok: Bool, exempt: Bool) -> str:
     )
 
 
-def _fraction(ok: Bool) -> str:
+def _fraction(ok: Bools) -> str:
     # rounded down: 1 means all
     return f"{math.floor(1e4 * ok.mean()) / 1e4:g} ({int(ok.sum())} of {len(ok)})"
 
 
-def _explained(mesh: Mesh, metric: Float, cell: int) -> SimplexOfStar:
+def _explained(mesh: Mesh, metric: Floats, cell: int) -> SimplexOfStar:
     compiled = _core.delaunay_violator2 if mesh.dim == 2 else _core.delaunay_violator3
     with meshing_errors():
         found = compiled(mesh.points, mesh.cells, mesh.facets, cell, metric)
@@ -262,7 +260,7 @@ def _explained(mesh: Mesh, metric: Float, cell: int) -> SimplexOfStar:
     )
 
 
-def circumcentre(simplex: Float, metric: Float) -> Float:
+def circumcentre(simplex: Floats, metric: Floats) -> Floats:
     """Return the (d,) centre of the circumscribed ellipsoid of a (d + 1, d) simplex in a metric."""
     legs = simplex[1:] - simplex[0]
     gram = np.einsum("ki,ij,lj->kl", legs, metric, legs)
@@ -270,5 +268,5 @@ def circumcentre(simplex: Float, metric: Float) -> Float:
     return np.asarray(simplex[0] + np.einsum("k,ki->i", weights, legs))
 
 
-def _length(vector: Float, metric: Float) -> float:
+def _length(vector: Floats, metric: Floats) -> float:
     return math.sqrt(np.einsum("i,ij,j->", vector, metric, vector))

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from .. import _core
+from ..arrays import Floats
 from ..meshes.mesh import Mesh
 
-Float = NDArray[np.float64]
 
-
-def surface_curvature(mesh: Mesh, *, ridge_angle: float = 45.0) -> Float:
+def surface_curvature(mesh: Mesh, *, ridge_angle: float = 45.0) -> Floats:
     """Return the curvature tensors of the boundary and the interfaces at the points.
 
     Parameters

@@ -7,13 +7,13 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes
 from ..metric.recovery import hessian_and_noise
 
-Floats = NDArray[np.float64]
 ExactFunction = Callable[[Floats], ArrayLike]
 
 # The four Gauss-Legendre points of (-1, 1) and their weights, for each direction of the collapsed

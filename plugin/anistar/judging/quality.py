@@ -8,16 +8,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes, unique_edges
 from ..metric import check_metric
 from ..metric.kernels.algebra import lower_factor
 from ..metric.kernels.elementary import log, power
 from ..report import attributes
-
-Floats = NDArray[np.float64]
 
 #: Bounds of the length of a unit edge.
 UNIT = (1 / math.sqrt(2), math.sqrt(2))
@@ -95,7 +93,7 @@ def quality(mesh: Mesh, M: Floats | None = None) -> Quality:
     )
 
 
-def metric_lengths(mesh: Mesh, M: Floats, edges: NDArray[np.int32]) -> Floats:
+def metric_lengths(mesh: Mesh, M: Floats, edges: Ints) -> Floats:
     """Return the (e,) lengths of edges in a metric that varies geometrically along them.
 
     The length is ``(l_a - l_b) / ln(l_a / l_b)`` for the lengths in the metrics of the ends [1].

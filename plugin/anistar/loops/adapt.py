@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..arguments import require
+from ..arrays import Floats
 from ..errors import MeshingError
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
@@ -23,8 +23,6 @@ from ..report import attributes
 from ..telling import telling_once
 from ..transfer import TransferOptions, TransferReport, transfer
 from .aliases import canonical
-
-Floats = NDArray[np.float64]
 
 STAGES = ("metric", "remesh", "transfer")
 

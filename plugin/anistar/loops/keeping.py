@@ -5,17 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..arguments import require
+from ..arrays import Floats
 from ..judging.quality import UNIT, metric_lengths
 from ..meshes.mesh import Mesh
 from ..meshes.topology import unique_edges
 from ..metric import ELEMENTS_PER_COMPLEXITY, check_metric, complexity, implied_metric
 from ..metric.laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY
-
-Floats = NDArray[np.float64]
 
 # Of the metric that a real mesh implies, per complexity of the metric it was made for.
 _COMPLEXITY_OF_REAL_MESHES = {

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arguments import require
+from ..arrays import Floats
 from ..errors import MeshingError
 from ..judging.interpolation_error import interpolation_error
 from ..meshes.fields import Field, as_fields
@@ -20,15 +21,7 @@ from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
 from ..report import Reportable, as_builtin
 from ..telling import telling_once
-from .adapt import (
-    AdaptOptions,
-    AdaptReport,
-    Floats,
-    Wanted,
-    adapt_to,
-    metric_field_names,
-    metric_for,
-)
+from .adapt import AdaptOptions, AdaptReport, Wanted, adapt_to, metric_field_names, metric_for
 from .keeping import needs_adaptation
 from .loop_options import GROWTH, LoopOptions
 

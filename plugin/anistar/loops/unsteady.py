@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arguments import require
+from ..arrays import Floats
 from ..errors import MeshingError
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
@@ -23,7 +24,7 @@ from ..remeshing.remesh import remesh
 from ..report import attributes
 from ..telling import telling_once
 from ..transfer import TransferOptions, transfer
-from .adapt import AdaptOptions, Floats, metric_field_names
+from .adapt import AdaptOptions, metric_field_names
 from .keeping import KeepOptions, needs_adaptation
 from .settling import check_max_coarsening
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from ..arrays import AnyArray
 
 if TYPE_CHECKING:
     from .mesh import Mesh
@@ -42,7 +44,7 @@ class Field:
         If `on` or `kind` is unknown, or the shape does not fit the kind.
     """
 
-    values: NDArray[Any]
+    values: AnyArray
     on: Location = "points"
     kind: Kind | None = None
 
@@ -71,7 +73,7 @@ class Field:
         object.__setattr__(self, "kind", kind)
 
 
-def _deduced_kind(values: NDArray[Any], on: str) -> Kind:
+def _deduced_kind(values: AnyArray, on: str) -> Kind:
     ranks: dict[int, Kind] = {1: "scalar", 2: "vector", 3: "tensor"}
     at_nodes = on == "cell_nodes"
     rank = values.ndim - at_nodes

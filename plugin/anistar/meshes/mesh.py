@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .topology import FacetTable, Float, Int, facet_table
+from ..arrays import AnyArray, Floats, Ints
+from .topology import FacetTable, facet_table
 from .violations import (
     Violation,
     cell_violations,
@@ -71,14 +72,14 @@ class Mesh:
         If the mesh is not valid; the message names the culprit.
     """
 
-    points: Float
-    cells: Int
-    cell_tags: Int = _NOT_GIVEN
-    facets: Int = _NOT_GIVEN
-    facet_tags: Int = _NOT_GIVEN
-    edges: Int = _NOT_GIVEN
-    edge_tags: Int = _NOT_GIVEN
-    corners: Int = _NOT_GIVEN
+    points: Floats
+    cells: Ints
+    cell_tags: Ints = _NOT_GIVEN
+    facets: Ints = _NOT_GIVEN
+    facet_tags: Ints = _NOT_GIVEN
+    edges: Ints = _NOT_GIVEN
+    edge_tags: Ints = _NOT_GIVEN
+    corners: Ints = _NOT_GIVEN
     names: dict[tuple[int, int], str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -116,7 +117,7 @@ class Mesh:
         mesh._store({**defaults, **arrays}, dict(names))
         return mesh
 
-    def _store(self, arrays: Mapping[str, NDArray[Any]], names: dict[tuple[int, int], str]) -> None:
+    def _store(self, arrays: Mapping[str, AnyArray], names: dict[tuple[int, int], str]) -> None:
         for name, array in arrays.items():
             view = array.view()
             view.flags.writeable = False
@@ -159,7 +160,7 @@ def _raise_first(violations: Iterable[Violation]) -> None:
         raise ValueError(violation.message)
 
 
-def _as_points(given: ArrayLike) -> Float:
+def _as_points(given: ArrayLike) -> Floats:
     points = np.asarray(given)
     if points.dtype.kind not in "biuf":
         raise TypeError(f"points must be real numbers, not {points.dtype}")
@@ -170,7 +171,7 @@ def _as_points(given: ArrayLike) -> Float:
     return np.array(points, dtype=np.float64, order="C")
 
 
-def _as_cells(given: ArrayLike, dim: int) -> Int:
+def _as_cells(given: ArrayLike, dim: int) -> Ints:
     try:
         cells = np.asarray(given)
     except ValueError as error:
@@ -189,7 +190,7 @@ def _as_cells(given: ArrayLike, dim: int) -> Int:
     return as_int32(cells, "cells")
 
 
-def as_int32(given: ArrayLike, name: str) -> Int:
+def as_int32(given: ArrayLike, name: str) -> Ints:
     """Return a new int32 array; raise and name the entry that would lose information."""
     array = np.asarray(given)
     if array.dtype.kind not in "biuf":
@@ -204,7 +205,7 @@ def as_int32(given: ArrayLike, name: str) -> Int:
     return result
 
 
-def _constraints(mesh: Mesh, dim: int, n_cells: int) -> dict[str, Int]:
+def _constraints(mesh: Mesh, dim: int, n_cells: int) -> dict[str, Ints]:
     """Return tags, facets, edges and corners with defaults filled in and shapes checked."""
     facets = _rows(mesh.facets, "facets", dim)
     edges = _rows(mesh.edges, "edges", 2)
@@ -223,7 +224,7 @@ def _constraints(mesh: Mesh, dim: int, n_cells: int) -> dict[str, Int]:
     }
 
 
-def _rows(given: ArrayLike | None, name: str, width: int) -> Int:
+def _rows(given: ArrayLike | None, name: str, width: int) -> Ints:
     rows = np.zeros((0, width), np.int32) if given is None else as_int32(given, name)
     if rows.size == 0:
         rows = rows.reshape(0, width)
@@ -232,7 +233,7 @@ def _rows(given: ArrayLike | None, name: str, width: int) -> Int:
     return rows
 
 
-def _tags(given: ArrayLike | None, name: str, length: int) -> Int:
+def _tags(given: ArrayLike | None, name: str, length: int) -> Ints:
     tags = np.zeros(length, np.int32) if given is None else as_int32(given, name)
     if tags.shape != (length,):
         raise ValueError(f"{name} must have shape ({length},), not {tags.shape}")

@@ -17,8 +17,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from .. import _core
+from ..arrays import Bools, Floats, Ints, Longs
 from ..metric.kernels.elementary import angle_of
-from .topology import Bool, Float, Int, Long, RowKeys, facet_normals, vector_lengths
+from .topology import RowKeys, facet_normals, vector_lengths
 
 # A point this close to a facet, relative to the facet's size, touches it: a hundred times the
 # round-off of the tests below, far below any gap that a double can resolve usefully.
@@ -27,7 +28,7 @@ CONTACT = 1e-12
 CHUNK = 1 << 16
 
 
-def coincident_points(points: Float, facets: Int) -> tuple[int, int] | None:
+def coincident_points(points: Floats, facets: Ints) -> tuple[int, int] | None:
     """Return two different points of the facets with equal coordinates, if there are any."""
     used = np.unique(facets)
     coordinates = points[used]
@@ -40,7 +41,7 @@ def coincident_points(points: Float, facets: Int) -> tuple[int, int] | None:
     return a, b
 
 
-def touching_point(points: Float, facets: Int) -> tuple[int, int] | None:
+def touching_point(points: Floats, facets: Ints) -> tuple[int, int] | None:
     """Return a point and the row of a facet that it lies on without being its vertex."""
     for first, second in _close_pairs(points, facets):
         for column in range(facets.shape[1]):
@@ -52,7 +53,7 @@ def touching_point(points: Float, facets: Int) -> tuple[int, int] | None:
     return None
 
 
-def crossing_facets(points: Float, facets: Int) -> tuple[int, int] | None:
+def crossing_facets(points: Floats, facets: Ints) -> tuple[int, int] | None:
     """Return the rows of two facets that cross each other, if there are any."""
     for first, second in _close_pairs(points, facets):
         hit = _cross(points, facets[first], facets[second])
@@ -62,7 +63,7 @@ def crossing_facets(points: Float, facets: Int) -> tuple[int, int] | None:
     return None
 
 
-def doubled_cell(cells: Int, facets: Int) -> int | None:
+def doubled_cell(cells: Ints, facets: Ints) -> int | None:
     """Return a cell with the points of another one, if there is any with all points on facets."""
     on_facets = np.isin(cells, facets).all(axis=1)
     rows = np.flatnonzero(on_facets)
@@ -71,7 +72,7 @@ def doubled_cell(cells: Int, facets: Int) -> int | None:
     return int(doubled[0]) if len(doubled) else None
 
 
-def covered_facet(points: Float, facets: Int) -> int | None:
+def covered_facet(points: Floats, facets: Ints) -> int | None:
     """Return a facet whose outer side is covered; facets must neither cross nor touch."""
     _, representative = np.unique(_components(facets, len(points)), return_index=True)
     for row in representative:
@@ -84,7 +85,7 @@ def covered_facet(points: Float, facets: Int) -> int | None:
     return None
 
 
-def _components(facets: Int, n_points: int) -> Int:
+def _components(facets: Ints, n_points: int) -> Ints:
     """Label facets connected through vertices (2D) or edges (3D) that have two facets."""
     width = facets.shape[1]
     ridges = np.concatenate([np.delete(facets, i, axis=1) for i in range(width)])
@@ -94,11 +95,11 @@ def _components(facets: Int, n_points: int) -> Int:
     simple = starts[counts == 2]
     first, second = order[simple] % len(facets), order[simple + 1] % len(facets)
     graph = coo_array((np.ones(len(first)), (first, second)), shape=(len(facets),) * 2)
-    labels: Int = connected_components(graph, directed=False)[1]
+    labels: Ints = connected_components(graph, directed=False)[1]
     return labels
 
 
-def _winding(corners: Float) -> float:
+def _winding(corners: Floats) -> float:
     """Return the winding number around the origin of facets given as (k, d, d) corners."""
     if corners.shape[2] == 2:
         a, b = corners[:, 0], corners[:, 1]
@@ -111,7 +112,7 @@ def _winding(corners: Float) -> float:
     return float(2 * angle_of(top, bottom).sum() / (4 * np.pi))
 
 
-def _close_pairs(points: Float, facets: Int) -> Iterator[tuple[Long, Long]]:
+def _close_pairs(points: Floats, facets: Ints) -> Iterator[tuple[Longs, Longs]]:
     """Yield (first, second) rows of facets that may meet, each pair in both orders."""
     close = _core.close_facets2 if points.shape[1] == 2 else _core.close_facets3
     pairs = close(np.ascontiguousarray(points), np.ascontiguousarray(facets, np.int32), CONTACT)
@@ -121,7 +122,7 @@ def _close_pairs(points: Float, facets: Int) -> Iterator[tuple[Long, Long]]:
         yield second, first
 
 
-def _lies_on(points: Float, facets: Int, vertices: Int) -> Bool:
+def _lies_on(points: Floats, facets: Ints, vertices: Ints) -> Bools:
     """Tell for each row whether the vertex lies on the facet without being a corner of it."""
     corners = points[facets]
     legs = corners[:, 1:] - corners[:, :1]
@@ -150,7 +151,7 @@ def _lies_on(points: Float, facets: Int, vertices: Int) -> Bool:
     return np.asarray(inside & ~own & (distance <= CONTACT * size + rounding))
 
 
-def _cross(points: Float, first: Int, second: Int) -> Bool:
+def _cross(points: Floats, first: Ints, second: Ints) -> Bools:
     """Tell for each row whether an edge of `second` passes through the inside of `first`."""
     shared = (second[:, :, None] == first[:, None, :]).any(axis=2)
     hit = np.zeros(len(first), dtype=bool)
@@ -171,7 +172,7 @@ def _cross(points: Float, first: Int, second: Int) -> Bool:
     return np.asarray(hit)
 
 
-def _separates(facet: Float, p: Float, q: Float) -> Bool:
+def _separates(facet: Floats, p: Floats, q: Floats) -> Bools:
     """Tell whether the line or plane of the facet lies strictly between `p` and `q`.
 
     Rounding the coordinates of a facet by eps turns its plane by eps over its height: far from a

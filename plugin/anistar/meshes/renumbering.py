@@ -8,15 +8,15 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from ..arrays import AnyArray, Floats
 from .fields import Field
 from .mesh import Mesh
-from .topology import Float, vector_lengths
+from .topology import vector_lengths
 
 Numbers = NDArray[np.int64]
 
@@ -111,11 +111,11 @@ def _kept_its_numbers(mesh: Mesh, other: Mesh) -> bool:
     )
 
 
-def _rounding(points: Float) -> float:
+def _rounding(points: Floats) -> float:
     return float(ROUNDING * np.ptp(points, axis=0).max())
 
 
-def _equal_rows(rows: NDArray[Any], others: NDArray[Any]) -> Numbers | None:
+def _equal_rows(rows: AnyArray, others: AnyArray) -> Numbers | None:
     """Return where each row is among the others, None unless they are the same but for order."""
     if np.array_equal(rows, others):
         return np.arange(len(rows))
@@ -127,7 +127,7 @@ def _equal_rows(rows: NDArray[Any], others: NDArray[Any]) -> Numbers | None:
     return found
 
 
-def _nearest_points(points: Float, others: Float) -> Numbers:
+def _nearest_points(points: Floats, others: Floats) -> Numbers:
     """Return the other point nearest to each point."""
     tree = KDTree(points)
     nearest = np.asarray(tree.query(others)[1], dtype=np.int64)
@@ -157,12 +157,12 @@ def _inverse(permutation: Numbers) -> Numbers:
     return inverse
 
 
-def _first_missing(rows: NDArray[Any], others: NDArray[Any]) -> int:
+def _first_missing(rows: AnyArray, others: AnyArray) -> int:
     """Return the first row that is none of the others."""
     _, number = np.unique(np.concatenate([rows, others]), axis=0, return_inverse=True)
     one, other = np.split(number.ravel(), [len(rows)])
     return int(np.argmin(np.isin(one, other)))
 
 
-def _listed(x: Float) -> str:
+def _listed(x: Floats) -> str:
     return ", ".join(f"{coordinate:.6g}" for coordinate in x)

@@ -12,12 +12,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
-Int = NDArray[np.int32]
-Long = NDArray[np.int64]
-Bool = NDArray[np.bool_]
+from ..arrays import Floats, Ints, Longs
 
 LOCAL_FACETS = {
     2: np.array([[1, 2], [2, 0], [0, 1]]),
@@ -39,13 +35,13 @@ class RowKeys:
         Number of points, the bound of the indices.
     """
 
-    def __init__(self, rows: Int, n_points: int) -> None:
+    def __init__(self, rows: Ints, n_points: int) -> None:
         self._n = max(n_points, 1)
-        self._pairs: Long | None = None
+        self._pairs: Longs | None = None
         if rows.shape[1] == 3 and self._n * self._n * self._n >= 2**63:
             self._pairs = np.unique(_horner(np.sort(rows, axis=1)[:, :2], self._n))
 
-    def encode(self, rows: Int) -> Long:
+    def encode(self, rows: Ints) -> Longs:
         """Return the keys of `rows`; -1 where the row cannot be one of the known rows."""
         ordered = np.sort(rows, axis=1)
         if self._pairs is None:
@@ -55,7 +51,7 @@ class RowKeys:
         return np.where(self._pairs[rank] == pair, rank * self._n + ordered[:, 2], -1)
 
 
-def _horner(ordered: Int, base: int) -> Long:
+def _horner(ordered: Ints, base: int) -> Longs:
     key = ordered[:, 0].astype(np.int64)
     for column in range(1, ordered.shape[1]):
         key *= base
@@ -79,14 +75,14 @@ class FacetTable:
         How many cells have the facet; more than two means that cells overlap.
     """
 
-    facets: Int
-    cells: Int
-    local: Int
-    counts: Long
-    _keys: Long
+    facets: Ints
+    cells: Ints
+    local: Ints
+    counts: Longs
+    _keys: Longs
     _encoder: RowKeys
 
-    def find(self, facets: Int) -> Long:
+    def find(self, facets: Ints) -> Longs:
         """Return the row of each given facet in the table, -1 where it is not a facet."""
         keys = self._encoder.encode(facets)
         if len(self._keys) == 0:
@@ -95,7 +91,7 @@ class FacetTable:
         return np.where(self._keys[row] == keys, row, -1)
 
 
-def facets_of_cells(cells: Int) -> Int:
+def facets_of_cells(cells: Ints) -> Ints:
     """Return the facets of each cell, outward, cell by cell.
 
     Parameters
@@ -112,7 +108,7 @@ def facets_of_cells(cells: Int) -> Int:
     return np.take(cells, LOCAL_FACETS[dim], axis=1).reshape(-1, dim)
 
 
-def facet_table(cells: Int, n_points: int) -> FacetTable:
+def facet_table(cells: Ints, n_points: int) -> FacetTable:
     """Return every facet of the cells once, sorted by key.
 
     Parameters
@@ -148,13 +144,13 @@ def facet_table(cells: Int, n_points: int) -> FacetTable:
     )
 
 
-def boundary_facets(cells: Int, n_points: int) -> Int:
+def boundary_facets(cells: Ints, n_points: int) -> Ints:
     """Return the (k, d) facets that have one cell only, oriented outward."""
     table = facet_table(cells, n_points)
     return np.asarray(table.facets[table.counts == 1])
 
 
-def neighbours(cells: Int, n_points: int) -> Int:
+def neighbours(cells: Ints, n_points: int) -> Ints:
     """Return the cell across each facet.
 
     Returns
@@ -172,7 +168,7 @@ def neighbours(cells: Int, n_points: int) -> Int:
     return across
 
 
-def unique_edges(simplices: Int, n_points: int) -> Int:
+def unique_edges(simplices: Ints, n_points: int) -> Ints:
     """Return the (e, 2) edges of the simplices, each once, smaller index first, sorted."""
     pairs = np.concatenate(
         [simplices[:, [i, j]] for i, j in itertools.combinations(range(simplices.shape[1]), 2)]
@@ -181,7 +177,7 @@ def unique_edges(simplices: Int, n_points: int) -> Int:
     return np.stack(np.divmod(keys, max(n_points, 1)), axis=1).astype(np.int32)
 
 
-def cell_determinants(points: Float, cells: Int) -> Float:
+def cell_determinants(points: Floats, cells: Ints) -> Floats:
     """Return the (m,) determinants of the edge vectors: `d!` times the signed volumes."""
     origin = points[cells[:, 0]]
     legs = [points[cells[:, i]] for i in range(1, cells.shape[1])]
@@ -196,12 +192,12 @@ def cell_determinants(points: Float, cells: Int) -> Float:
     )
 
 
-def cell_volumes(points: Float, cells: Int) -> Float:
+def cell_volumes(points: Floats, cells: Ints) -> Floats:
     """Return the (m,) signed areas (2D) or volumes (3D) of the cells."""
     return cell_determinants(points, cells) / math.factorial(points.shape[1])
 
 
-def facet_normals(points: Float, facets: Int) -> Float:
+def facet_normals(points: Floats, facets: Ints) -> Floats:
     """Return the (k, d) normals whose length is the facet's length (2D) or area (3D)."""
     first = points[facets[:, 1]] - points[facets[:, 0]]
     if facets.shape[1] == 2:
@@ -209,22 +205,22 @@ def facet_normals(points: Float, facets: Int) -> Float:
     return np.asarray(0.5 * np.cross(first, points[facets[:, 2]] - points[facets[:, 0]]))
 
 
-def vector_lengths(vectors: Float) -> Float:
+def vector_lengths(vectors: Floats) -> Floats:
     """Return the (...) lengths of (..., d) vectors."""
     return np.asarray(np.sqrt((vectors * vectors).sum(axis=-1)))
 
 
-def facet_measures(points: Float, facets: Int) -> Float:
+def facet_measures(points: Floats, facets: Ints) -> Floats:
     """Return the (k,) lengths (2D) or areas (3D) of the facets."""
     return vector_lengths(facet_normals(points, facets))
 
 
-def edge_lengths(points: Float, edges: Int) -> Float:
+def edge_lengths(points: Floats, edges: Ints) -> Floats:
     """Return the (e,) lengths of the edges."""
     return vector_lengths(points[edges[:, 1]] - points[edges[:, 0]])
 
 
-def measure_by_tag(measures: Float, tags: Int) -> dict[int, float]:
+def measure_by_tag(measures: Floats, tags: Ints) -> dict[int, float]:
     """Return the sum of the (k,) measures for every tag that occurs."""
     values, inverse = np.unique(tags, return_inverse=True)
     sums = np.bincount(inverse.ravel(), weights=measures, minlength=len(values))

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import AnyArray, Bools, Floats, Ints, Longs
 from . import overlap
 from .topology import (
     LOCAL_FACETS,
-    Bool,
     FacetTable,
-    Float,
-    Int,
     RowKeys,
     cell_determinants,
     cell_volumes,
@@ -54,7 +50,7 @@ class Violation:
     indices: tuple[int, ...] = ()
 
 
-def violations_at(kind: str, bad: Bool, message: str) -> Iterator[Violation]:
+def violations_at(kind: str, bad: Bools, message: str) -> Iterator[Violation]:
     """Yield a violation when any entry is bad; `{i}` in the message is the first one."""
     indices = np.flatnonzero(bad)
     if len(indices):
@@ -63,7 +59,7 @@ def violations_at(kind: str, bad: Bool, message: str) -> Iterator[Violation]:
         yield Violation(kind, text, tuple(indices.tolist()))
 
 
-def _index_violation(name: str, rows: Int, n_points: int) -> Iterator[Violation]:
+def _index_violation(name: str, rows: Ints, n_points: int) -> Iterator[Violation]:
     outside = (rows < 0) | (rows >= n_points)
     bad = outside.any(axis=1)
     if bad.any():
@@ -73,7 +69,7 @@ def _index_violation(name: str, rows: Int, n_points: int) -> Iterator[Violation]
         )
 
 
-def point_violations(points: Float) -> Iterator[Violation]:
+def point_violations(points: Floats) -> Iterator[Violation]:
     """Yield the points whose coordinates cannot be computed with."""
     non_finite = ~np.isfinite(points).all(axis=1)
     yield from violations_at("non_finite", non_finite, "point {i} has a non-finite coordinate")
@@ -82,7 +78,7 @@ def point_violations(points: Float) -> Iterator[Violation]:
     yield from violations_at("non_finite", huge, text)
 
 
-def cell_violations(points: Float, cells: Int) -> Iterator[Violation]:
+def cell_violations(points: Floats, cells: Ints) -> Iterator[Violation]:
     """Yield what is wrong with points and cells taken one by one."""
     if len(cells) == 0:
         yield Violation("empty", "the mesh is empty: it has no cells")
@@ -101,7 +97,7 @@ def cell_violations(points: Float, cells: Int) -> Iterator[Violation]:
     yield from volume_violations(points, cells)
 
 
-def volume_violations(points: Float, cells: Int) -> Iterator[Violation]:
+def volume_violations(points: Floats, cells: Ints) -> Iterator[Violation]:
     """Yield the cells whose volume is negative, or zero up to round-off."""
     flat, inverted = volume_signs(points, cells)
     for kind, bad, word in (("zero_volume", flat, "zero"), ("inverted", inverted, "negative")):
@@ -111,19 +107,19 @@ def volume_violations(points: Float, cells: Int) -> Iterator[Violation]:
             yield from violations_at(kind, bad, f"cell {{i}} has {word} volume: {value:.3g}")
 
 
-def volume_signs(points: Float, cells: Int) -> tuple[Bool, Bool]:
+def volume_signs(points: Floats, cells: Ints) -> tuple[Bools, Bools]:
     """Return the (m,) masks of the cells of zero volume up to round-off, and of the inverted."""
     signs = [_volume_signs(points, some) for some in _chunks(cells)]
     flat, inverted = (np.concatenate(masks) for masks in zip(*signs, strict=True))
     return flat, inverted
 
 
-def _chunks(rows: NDArray[Any]) -> list[NDArray[Any]]:
+def _chunks(rows: AnyArray) -> list[AnyArray]:
     """Cut an array into parts of bounded length: what is computed of a mesh outweighs it."""
     return np.array_split(rows, len(rows) // CHUNK + 1)
 
 
-def _volume_signs(points: Float, cells: Int) -> tuple[Bool, Bool]:
+def _volume_signs(points: Floats, cells: Ints) -> tuple[Bools, Bools]:
     determinants = cell_determinants(points, cells)
     scale = np.ones(len(cells))
     for i in range(1, cells.shape[1]):
@@ -132,7 +128,7 @@ def _volume_signs(points: Float, cells: Int) -> tuple[Bool, Bool]:
     return flat, ~flat & (determinants < 0)
 
 
-def side_violations(points: Float, cells: Int, table: FacetTable) -> Iterator[Violation]:
+def side_violations(points: Floats, cells: Ints, table: FacetTable) -> Iterator[Violation]:
     """Yield cells that meet wrongly: duplicates, overlaps, hanging points, doubled points."""
     crowded = table.counts > 2
     same = _same_side(cells, table)
@@ -157,7 +153,7 @@ def nodes_of(table: FacetTable, row: int) -> str:
     return str(tuple(table.facets[row].tolist()))
 
 
-def _same_side(cells: Int, table: FacetTable) -> Bool:
+def _same_side(cells: Ints, table: FacetTable) -> Bools:
     """Tell which facets are seen in the same sense, not opposite ones, by their two cells."""
     width = cells.shape[1] - 1
     same = np.zeros(len(table.counts), dtype=bool)
@@ -168,7 +164,7 @@ def _same_side(cells: Int, table: FacetTable) -> Bool:
     return same
 
 
-def turn_alike(first: Int, second: Int) -> Bool:
+def turn_alike(first: Ints, second: Ints) -> Bools:
     """Tell which of the facets, with equal points in each row, have the same orientation."""
     if first.shape[1] == 2:
         return np.asarray(first[:, 0] == second[:, 0])
@@ -176,7 +172,7 @@ def turn_alike(first: Int, second: Int) -> Bool:
     return np.asarray(second[np.arange(len(second)), (start + 1) % 3] == first[:, 1])
 
 
-def _duplicate_violations(cells: Int) -> Iterator[Violation]:
+def _duplicate_violations(cells: Ints) -> Iterator[Violation]:
     _, first, inverse = np.unique(
         np.sort(cells, axis=1), axis=0, return_index=True, return_inverse=True
     )
@@ -187,7 +183,7 @@ def _duplicate_violations(cells: Int) -> Iterator[Violation]:
         yield from violations_at("duplicate_cell", duplicate, f"cell {{i}} repeats cell {of}")
 
 
-def _boundary_violations(points: Float, table: FacetTable) -> Iterator[Violation]:
+def _boundary_violations(points: Floats, table: FacetTable) -> Iterator[Violation]:
     outer = np.flatnonzero(table.counts == 1)
     facets, owners = table.facets[outer], table.cells[outer, 0]
     doubled = overlap.coincident_points(points, facets)
@@ -217,7 +213,7 @@ def _boundary_violations(points: Float, table: FacetTable) -> Iterator[Violation
 
 
 def constraint_violations(
-    points: Float, cells: Int, facets: Int, edges: Int, corners: Int, table: FacetTable
+    points: Floats, cells: Ints, facets: Ints, edges: Ints, corners: Ints, table: FacetTable
 ) -> Iterator[Violation]:
     """Yield what is wrong with facets, edges and corners against the cells."""
     lists = (("facet", facets), ("edge", edges), ("corner", corners[:, None]))
@@ -237,7 +233,7 @@ def constraint_violations(
 _EDGE = "edge {i} is not an edge of any cell"
 
 
-def _repeated(name: str, keys: NDArray[np.int64]) -> Iterator[Violation]:
+def _repeated(name: str, keys: Longs) -> Iterator[Violation]:
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     repeated = (first[inverse] != np.arange(len(keys))) & (keys >= 0)
     if repeated.any():
@@ -245,7 +241,7 @@ def _repeated(name: str, keys: NDArray[np.int64]) -> Iterator[Violation]:
         yield from violations_at(f"duplicate_{name}", repeated, f"{name} {{i}} repeats {name} {of}")
 
 
-def _is_edge(cells: Int, edges: Int, keys: NDArray[np.int64], n_points: int) -> Bool:
+def _is_edge(cells: Ints, edges: Ints, keys: Longs, n_points: int) -> Bools:
     """Tell which edges belong to a cell, looking only at cells with two of their points."""
     marked = np.zeros(n_points, dtype=bool)
     marked[edges] = True
@@ -256,7 +252,7 @@ def _is_edge(cells: Int, edges: Int, keys: NDArray[np.int64], n_points: int) -> 
     return np.isin(keys, RowKeys(known, n_points).encode(known))
 
 
-def needs_facet(cell_tags: Int, table: FacetTable) -> Bool:
+def needs_facet(cell_tags: Ints, table: FacetTable) -> Bools:
     """Tell which facets of the table must be stored: the boundary and region interfaces."""
     tags = cell_tags[table.cells]
     return np.asarray((table.counts == 1) | ((table.counts > 1) & (tags[:, 0] != tags[:, 1])))

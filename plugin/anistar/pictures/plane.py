@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..atomic import replaced
 from ..judging.certificate import Certificate
 from ..meshes.mesh import Mesh
@@ -24,7 +25,6 @@ except ImportError as error:
     error.add_note("pictures need matplotlib: pip install 'anistar[plot]'")
     raise
 
-Floats = NDArray[np.float64]
 Box = tuple[float, float, float, float]
 Target = str | os.PathLike[str] | BinaryIO
 

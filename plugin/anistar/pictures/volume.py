@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..meshes.mesh import Mesh
 from ..meshes.topology import boundary_facets
 from .plane import INK, Target
@@ -20,7 +21,6 @@ except ImportError as error:
     error.add_note("pictures need matplotlib: pip install 'anistar[plot]'")
     raise
 
-Floats = NDArray[np.float64]
 
 #: Direction from the mesh to the eye, if no other is given.
 VIEW = (1.0, 0.8, 0.6)

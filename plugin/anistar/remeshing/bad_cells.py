@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..judging.quality import mean_ratios
 from ..meshes.mesh import Mesh
 
@@ -42,7 +42,7 @@ def quality_bound(kept: float) -> float:
 
 
 def worst_cells(
-    mesh: Mesh, M: NDArray[np.float64], bound: float = BAD_QUALITY
+    mesh: Mesh, M: Floats, bound: float = BAD_QUALITY
 ) -> tuple[int, tuple[BadCell, ...]]:
     """Return how many cells have a mean ratio below `bound`, and the ten worst of them.
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats, Ints
 from ..errors import MeshingError
 from ..memory import available_memory
 from ..meshes.mesh import Mesh
@@ -17,8 +17,6 @@ from ..metric import MetricOptions, complexity
 from ..metric.kernels.elementary import log
 from ..metric.laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY, integral_of_exponential
 from .options import RemeshOptions
-
-Floats = NDArray[np.float64]
 
 #: Of real meshes; perfect triangles have two to a vertex, tetrahedra about six.
 CELLS_PER_VERTEX = {2: 2.0, 3: 5.5}
@@ -162,7 +160,7 @@ def _told(n_bytes: float) -> str:
     return f"{told:.3g} PB"
 
 
-def _on_facets(points: Floats, facets: NDArray[np.int32], metric: Floats) -> float:
+def _on_facets(points: Floats, facets: Ints, metric: Floats) -> float:
     """Return how many vertices facets ask for by their lengths or areas in the metric.
 
     Where the domain is thinner than the cells, it is the facets that decide. As in the mesher

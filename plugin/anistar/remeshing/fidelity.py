@@ -10,12 +10,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from .. import _core
+from ..arrays import Floats, Ints, Longs
 from ..errors import MeshingError
 from ..meshes.mesh import Mesh
 from ..meshes.topology import (
-    Float,
-    Int,
-    Long,
     cell_volumes,
     edge_lengths,
     facet_measures,
@@ -58,7 +56,7 @@ class SmoothShape:
     """
 
     measures: Measures
-    sag: Float
+    sag: Floats
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,7 +186,7 @@ def _found_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape | None:
     return SmoothShape(measures, sag)
 
 
-def _added_to_regions(geometry: Mesh, bulge: Float) -> Iterator[tuple[int, float]]:
+def _added_to_regions(geometry: Mesh, bulge: Floats) -> Iterator[tuple[int, float]]:
     """Yield what the (k,) volumes behind the facets add to the regions on their two sides."""
     table = facet_table(geometry.cells, geometry.n_points)
     sides = table.cells[table.find(geometry.facets)]
@@ -265,9 +263,9 @@ def surface_deviations(
     return tuple(found)
 
 
-def _nearest_facets(geometry: Mesh, rows: Long, queries: Float) -> tuple[Int, Float]:
+def _nearest_facets(geometry: Mesh, rows: Longs, queries: Floats) -> tuple[Ints, Floats]:
     nearest = _core.nearest_facets2 if geometry.dim == 2 else _core.nearest_facets3
-    found: tuple[Int, Float] = nearest(geometry.points, geometry.facets[rows], queries)
+    found: tuple[Ints, Floats] = nearest(geometry.points, geometry.facets[rows], queries)
     return found
 
 

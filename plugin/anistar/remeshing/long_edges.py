@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..judging.quality import metric_lengths
 from ..meshes.mesh import Mesh
 from ..meshes.topology import unique_edges
@@ -41,7 +41,7 @@ class LongEdge:
         return {**asdict(self), "ends": list(self.ends), "place": list(self.place)}
 
 
-def longest_edges(mesh: Mesh, M: NDArray[np.float64]) -> tuple[LongEdge, ...]:
+def longest_edges(mesh: Mesh, M: Floats) -> tuple[LongEdge, ...]:
     """Return the edges that are longer than 2 in the metric, the ten longest at most.
 
     Parameters

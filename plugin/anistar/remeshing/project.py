@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..errors import MeshingError
 from ..meshes.mesh import Mesh
 
-Project = Callable[[NDArray[np.float64], int], ArrayLike]
+Project = Callable[[Floats, int], ArrayLike]
 """``project(points, facet_tag)``: the (k, d) points moved onto the user's geometry."""
 
 #: A point is projected from the smooth curve or surface through the points of the geometry. One
@@ -36,12 +37,12 @@ class Landing:
         Those of the geometry.
     """
 
-    def __init__(self, project: Project, points: NDArray[np.float64]) -> None:
+    def __init__(self, project: Project, points: Floats) -> None:
         self._project = project
         self._extent = float(np.ptp(points, axis=0).max())
         self._landed: dict[int, int] = {}
 
-    def at(self, x: NDArray[np.float64], tag: int) -> NDArray[np.float64]:
+    def at(self, x: Floats, tag: int) -> Floats:
         """Return where a point of the facets with a tag lands.
 
         Raises
@@ -65,7 +66,7 @@ class Landing:
             self._check_stays(landed, tag, distance)
         return landed
 
-    def _check_stays(self, landed: NDArray[np.float64], tag: int, distance: float) -> None:
+    def _check_stays(self, landed: Floats, tag: int, distance: float) -> None:
         again = _distance(landed, self._projected(landed, tag))
         most = max(CONTRACTION * distance, SETTLED * self._extent)
         if not again <= most:
@@ -75,14 +76,14 @@ class Landing:
                 f"{most:.3g} is taken for having landed"
             )
 
-    def _projected(self, x: NDArray[np.float64], tag: int) -> NDArray[np.float64]:
+    def _projected(self, x: Floats, tag: int) -> Floats:
         moved = np.asarray(self._project(x[None].copy(), tag), dtype=np.float64)
         if moved.shape != (1, len(x)) or not np.isfinite(moved).all():
             raise ValueError(
                 f"project must return finite points of shape {(1, len(x))}, got {moved!r} for "
                 f"{_text(x)} and facet tag {tag}"
             )
-        landed: NDArray[np.float64] = moved[0]
+        landed: Floats = moved[0]
         return landed
 
 
@@ -98,9 +99,9 @@ def pointwise(project: Project, geometry: Mesh, scale: float) -> Callable[..., t
     return at
 
 
-def _distance(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
+def _distance(x: Floats, y: Floats) -> float:
     return float(np.sqrt(np.square(y - x).sum()))
 
 
-def _text(x: NDArray[np.float64]) -> str:
+def _text(x: Floats) -> str:
     return "(" + ", ".join(f"{coordinate:.6g}" for coordinate in x) + ")"

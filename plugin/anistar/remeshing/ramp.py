@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..metric import MetricError, exp_metric, log_metric
 from ..metric.laws.refinement import Refinement, refinement_limited
 from ..telling import tell
 from ..transfer import TransferOptions, transfer
-
-Floats = NDArray[np.float64]
 
 
 def approached(mesh: Mesh, metric: Floats, scale: float, ratio: float | str | None) -> Refinement:

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .. import _core
 from ..arguments import require
+from ..arrays import Floats, Ints
 from ..core_errors import meshing_errors
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
@@ -24,9 +25,6 @@ from .ramp import approached, carried, noted
 from .report import RemeshReport, report_of
 from .size_range import check_sizes
 from .volume_remesh import check_surfaces, remesh_volume
-
-Float = NDArray[np.float64]
-Int = NDArray[np.int32]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,7 +40,7 @@ class Remeshed:
     """
 
     mesh: Mesh
-    metric: Float
+    metric: Floats
     report: RemeshReport
 
 
@@ -158,7 +156,7 @@ def _new_mesh(raw: dict[str, Any], mesh: Mesh, geometry: Mesh, scale: float) -> 
     )
 
 
-def _unit_scale(points: Float) -> float:
+def _unit_scale(points: Floats) -> float:
     """Return the power of two that brings the extent of the points to about one.
 
     The core then computes with the same numbers whatever the unit of length, as long as units
@@ -170,7 +168,7 @@ def _unit_scale(points: Float) -> float:
 
 def _call_core(
     mesh: Mesh,
-    metric: Float,
+    metric: Floats,
     geometry: Mesh,
     project: Project | None,
     options: RemeshOptions,
@@ -208,7 +206,7 @@ def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:
         raise ValueError(f"frozen_tags: no facet of the geometry has tag {unknown[0]}")
 
 
-def _same_points(wanted: Float, points: Float) -> Int:
+def _same_points(wanted: Floats, points: Floats) -> Ints:
     """Return the index in `points` of every row of `wanted`, which occurs there bit by bit."""
     if len(wanted) == 0:
         return np.zeros(0, np.int32)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..meshes.mesh import Mesh
 from ..metric import MetricError
 
@@ -13,7 +13,7 @@ from ..metric import MetricError
 SMALLEST_SIZE, LARGEST_SIZE = 1e-30, 1e30
 
 
-def check_sizes(mesh: Mesh, metric: NDArray[np.float64], scale: float) -> None:
+def check_sizes(mesh: Mesh, metric: Floats, scale: float) -> None:
     """Raise if a metric asks for edges that are out of the range of double precision.
 
     Parameters

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
+from ..arrays import Floats
 from ..core_errors import meshing_errors
 from ..errors import MeshingError
 from ..meshes.mesh import Mesh
@@ -50,7 +50,7 @@ def check_surfaces(mesh: Mesh, report: RemeshReport) -> None:
 
 def remesh_volume(
     mesh: Mesh,
-    metric: NDArray[np.float64],
+    metric: Floats,
     geometry: Mesh,
     project: Project | None,
     options: RemeshOptions,

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_array
 
+from ..arrays import Floats, Ints
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
-from ..meshes.topology import Float, Int
 from .location import Places, located_nodes, located_points
 from .options import TransferOptions
 from .regions import Regions, common_regions
@@ -102,7 +102,7 @@ class Interpolator:
         return carried
 
 
-def _by_rows(weights: Float, columns: Int, size: int) -> csr_array:
+def _by_rows(weights: Floats, columns: Ints, size: int) -> csr_array:
     n, width = weights.shape
     starts = np.arange(0, n * width + 1, width)
     matrix = csr_array((weights.ravel(), columns.ravel(), starts), shape=(n, size), copy=True)

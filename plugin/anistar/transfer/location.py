@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
+from ..arrays import Bools, Floats, Ints
 from ..meshes.mesh import Mesh
-from ..meshes.topology import Bool, Float, Int, cell_determinants, vector_lengths
+from ..meshes.topology import cell_determinants, vector_lengths
 from .options import TransferOptions
 from .regions import Regions
 from .values.nodes import node_coordinates
@@ -38,14 +38,14 @@ class Places:
         Largest distance from the source.
     """
 
-    cells: Int
-    weights: Float
-    inside: Bool
-    outside: Bool
+    cells: Ints
+    weights: Floats
+    inside: Bools
+    outside: Bools
     max_distance: float
 
 
-def locator(mesh: Mesh, cells: Int | None = None) -> Any:
+def locator(mesh: Mesh, cells: Ints | None = None) -> Any:
     """Return the compiled point locator of the mesh, or of some of its cells."""
     build = _core.Locator2 if mesh.dim == 2 else _core.Locator3
     if cells is None or len(cells) == mesh.n_cells:
@@ -74,7 +74,7 @@ def located_points(
     return _places(source, target.points, cells, weights, distance, "point", options)
 
 
-def _own_regions(mesh: Mesh, regions: Regions) -> Int:
+def _own_regions(mesh: Mesh, regions: Regions) -> Ints:
     """Return the region of each target point, -1 where its cells are of several."""
     lowest = np.full(mesh.n_points, regions.count, np.int32)
     highest = np.full(mesh.n_points, -1, np.int32)
@@ -114,7 +114,7 @@ def located_nodes(
 
 
 def located_coordinates(
-    source: Mesh, target: Mesh, regions: Regions, coordinates: Float, options: TransferOptions
+    source: Mesh, target: Mesh, regions: Regions, coordinates: Floats, options: TransferOptions
 ) -> Places:
     """Locate the points with the given (k, d + 1) barycentric coordinates in every cell."""
     dim, count = target.dim, len(coordinates)
@@ -143,7 +143,7 @@ def located_coordinates(
     )
 
 
-def barycentric(mesh: Mesh, cells: Int, points: Float) -> Float:
+def barycentric(mesh: Mesh, cells: Ints, points: Floats) -> Floats:
     """Return the (q, d + 1) barycentric coordinates of (q, d) points in the given cells."""
     width = mesh.dim + 1
     corners = mesh.points[mesh.cells[cells]]
@@ -159,10 +159,10 @@ def barycentric(mesh: Mesh, cells: Int, points: Float) -> Float:
 
 def _places(
     source: Mesh,
-    queries: Float,
-    cells: Int,
-    weights: Float,
-    distance: NDArray[np.float64],
+    queries: Floats,
+    cells: Ints,
+    weights: Floats,
+    distance: Floats,
     what: str,
     options: TransferOptions,
     per_cell: int = 1,
@@ -180,7 +180,7 @@ def _places(
     return Places(cells, _convex(weights), distance == 0, outside, float(distance.max(initial=0.0)))
 
 
-def _convex(weights: Float) -> Float:
+def _convex(weights: Floats) -> Floats:
     """Clip what round-off left negative, so that values keep within their bounds."""
     positive = np.maximum(weights, 0.0)
     return np.asarray(positive / positive.sum(axis=1, keepdims=True))

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .. import _core
+from ..arrays import AnyArray, Floats, Ints, Longs
 from ..meshes.mesh import Mesh
-from ..meshes.topology import Float, Int, Long
 from ..metric import check_metric, interpolated
 from .location import Places, located_coordinates
 from .options import Outside, TransferOptions
@@ -25,7 +23,7 @@ def transfer_quadrature(
     target_rule: ArrayLike | None = None,
     metric: ArrayLike | None = None,
     outside: Outside = "raise",
-) -> NDArray[Any]:
+) -> AnyArray:
     """Carry history variables from quadrature points to quadrature points.
 
     Each target point takes the whole state of the source point that is nearest to it in the
@@ -88,7 +86,7 @@ def transfer_quadrature(
     return np.asarray(flat[chosen].reshape(target.n_cells, len(wanted), *states.shape[2:]))
 
 
-def _as_rule(name: str, rule: ArrayLike, dim: int) -> Float:
+def _as_rule(name: str, rule: ArrayLike, dim: int) -> Floats:
     points = np.asarray(rule, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != dim + 1 or len(points) == 0:
         raise ValueError(f"{name} must have shape (q, {dim + 1}), not {points.shape}")
@@ -101,7 +99,7 @@ def _as_rule(name: str, rule: ArrayLike, dim: int) -> Float:
     return points
 
 
-def _metric_at(target: Mesh, rule: Float, metric: ArrayLike | None) -> Float:
+def _metric_at(target: Mesh, rule: Floats, metric: ArrayLike | None) -> Floats:
     """Return the (m * r, d, d) metric at the target's quadrature points."""
     n = target.n_cells * len(rule)
     if metric is None:
@@ -112,8 +110,8 @@ def _metric_at(target: Mesh, rule: Float, metric: ArrayLike | None) -> Float:
 
 
 def _nearest_in_region(
-    points: Float, cells: Long, queries: Float, tensors: Float, places: Places, rows: Long
-) -> Int:
+    points: Floats, cells: Longs, queries: Floats, tensors: Floats, places: Places, rows: Longs
+) -> Ints:
     """Return the index among the flat points of the one nearest to each query."""
     number = np.searchsorted(cells, places.cells[rows])
     offset = points[number] - queries[:, None]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Floats, Ints
 from ..meshes.mesh import Mesh
-from ..meshes.topology import Float, Int
 
 _log = logging.getLogger(__name__)
 
@@ -29,8 +29,8 @@ class Regions:
         are then not told apart.
     """
 
-    source: Int
-    target: Int
+    source: Ints
+    target: Ints
     tags: tuple[int, ...]
     unmatched: tuple[int, ...] = ()
 
@@ -71,7 +71,7 @@ def warn_of_unmatched(regions: Regions) -> None:
         )
 
 
-def sums_by_region(values: Float, regions: Int, count: int) -> Float:
+def sums_by_region(values: Floats, regions: Ints, count: int) -> Floats:
     """Return the (count, ...) sums of the (m, ...) rows of each region."""
     columns = values.reshape(len(values), -1)
     sums = [

@@ -5,12 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..report import as_builtin
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 
 from ..arguments import require
+from ..arrays import Floats
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
-from ..meshes.topology import Float
 from .interpolation import Interpolator
 from .options import Outside, TransferOptions
 from .projection.bounded import bounded
@@ -219,7 +219,7 @@ def _pair(before: Any, after: Any) -> tuple[list[float], list[float]]:
     return np.ravel(before).tolist(), np.ravel(after).tolist()
 
 
-def _defects(held: Float, kept: Float, regions: Regions) -> dict[int, list[float]]:
+def _defects(held: Floats, kept: Floats, regions: Regions) -> dict[int, list[float]]:
     """Return what each region has more than before, from the integrals over the cells."""
     if not regions.tags:
         return {}

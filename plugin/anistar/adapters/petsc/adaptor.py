@@ -12,9 +12,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Floats
 from ...meshes.mesh import Mesh
 from ...metric import graded
 from ...remeshing.options import RemeshOptions
@@ -34,8 +32,6 @@ from .library import (
 )
 from .plex import check_plex, plex_of, read_plex
 from .vectors import metric_from_vec
-
-Float = NDArray[np.float64]
 
 # PETSc keeps the addresses of what is registered until the process ends.
 _entries: dict[str, Any] = {}
@@ -177,7 +173,7 @@ def _with_labels(plex: Any, labels: Sequence[Any]) -> Any:
 
 
 def _remeshed(
-    plex: Any, metric: Float, factor: float, options: RemeshOptions
+    plex: Any, metric: Floats, factor: float, options: RemeshOptions
 ) -> tuple[Mesh, PlexLabels]:
     mesh, labels = read_plex(plex)
     if factor > 1:
@@ -186,7 +182,7 @@ def _remeshed(
 
 
 def _remeshed_on_first(
-    plex: Any, metric: Float, factor: float, options: RemeshOptions
+    plex: Any, metric: Floats, factor: float, options: RemeshOptions
 ) -> tuple[Mesh | None, PlexLabels]:
     """Remesh on the first process; all learn of its labels, or of its failure."""
     comm = processes(plex)

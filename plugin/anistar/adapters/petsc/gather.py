@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Floats
 from .library import PETSc
 
-Float = NDArray[np.float64]
 
-
-def gathered(plex: Any, metric: Float) -> tuple[Any, Float]:
+def gathered(plex: Any, metric: Floats) -> tuple[Any, Floats]:
     """Return a DMPlex and its metric on the first process of its communicator.
 
     Collective.

@@ -16,14 +16,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Bools, Ints, Longs
 from ...meshes.mesh import Mesh
 from .library import PETSc
 from .strata import Strata
-
-Bool = NDArray[np.bool_]
-Long = NDArray[np.int64]
 
 Pair = tuple[str, int]
 
@@ -74,7 +71,7 @@ class PlexLabels:
         return cls(names=tuple(sorted(occurring)), pairs=pairs, corners=at)
 
 
-def _tags(mesh: Mesh) -> dict[int, NDArray[np.int32]]:
+def _tags(mesh: Mesh) -> dict[int, Ints]:
     tags = {mesh.dim: mesh.cell_tags, mesh.dim - 1: mesh.facet_tags}
     return tags | {1: mesh.edge_tags} if mesh.dim == 3 else tags
 
@@ -85,7 +82,7 @@ class Labelling:
 
     names: tuple[str, ...]
     pairs: tuple[Pair, ...]
-    carried: tuple[Bool, ...]
+    carried: tuple[Bools, ...]
     completed: frozenset[Pair]
 
 
@@ -110,7 +107,7 @@ def read_labels(plex: Any, mesh_strata: Strata) -> Labelling:
     return Labelling(tuple(names), tuple(pairs), tuple(own), repeated)
 
 
-def _implied(mesh_strata: Strata, carried: list[Bool], k: int) -> Bool:
+def _implied(mesh_strata: Strata, carried: list[Bools], k: int) -> Bools:
     """Return which labels points of dimension k share with a point of higher dimension around."""
     implied = np.zeros_like(carried[k])
     for higher in range(k + 1, mesh_strata.dim + 1):
@@ -120,7 +117,7 @@ def _implied(mesh_strata: Strata, carried: list[Bool], k: int) -> Bool:
     return implied
 
 
-def tags_of_sets(carried: Bool) -> tuple[NDArray[np.int32], Bool]:
+def tags_of_sets(carried: Bools) -> tuple[Ints, Bools]:
     """Return one tag for each row, and the set of labels of each tag; tag 0 carries none."""
     none = np.zeros((1, carried.shape[1]), bool)
     sets, tags = np.unique(np.vstack([none, carried]), axis=0, return_inverse=True)
@@ -128,7 +125,7 @@ def tags_of_sets(carried: Bool) -> tuple[NDArray[np.int32], Bool]:
 
 
 def write_label(
-    plex: Any, mesh_strata: Strata, pair: Pair, members: Mapping[int, Long], *, complete: bool
+    plex: Any, mesh_strata: Strata, pair: Pair, members: Mapping[int, Longs], *, complete: bool
 ) -> None:
     """Give points, by dimension and row, one value of a label; their boundary too if asked."""
     name, value = pair

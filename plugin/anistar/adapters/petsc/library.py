@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Longs
 from .. import dolfinx_wheel
 
 dolfinx_wheel.make_importable()
@@ -49,7 +49,7 @@ def library() -> ctypes.CDLL:
     raise OSError("petsc4py is loaded, but not from a shared libpetsc: nothing can be registered")
 
 
-def cones(plex: Any, size: int) -> NDArray[np.int64]:
+def cones(plex: Any, size: int) -> Longs:
     """Return the cones of all points of a DMPlex, one after the other in the order of points."""
     pointer = ctypes.c_void_p()
     function = library().DMPlexGetCones

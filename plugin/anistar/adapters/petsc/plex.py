@@ -6,13 +6,13 @@ from collections import defaultdict
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Floats, Ints, Longs
 from ...meshes.mesh import Mesh
 from ...meshes.topology import cell_determinants
 from .labels import Labelling, Pair, PlexLabels, read_labels, tags_of_sets, write_label
 from .library import PETSc
-from .strata import Long, Strata, strata
+from .strata import Strata, strata
 
 # The first three vertices of PETSc's tetrahedra are clockwise as seen from the fourth.
 _PETSC_ORDER = {2: [0, 1, 2], 3: [0, 2, 1, 3]}
@@ -115,7 +115,7 @@ def plex_of(mesh: Mesh | None, labels: PlexLabels, comm: Any, dim: int) -> Any:
 
 
 def _tagged(
-    points: NDArray[np.float64], cells: NDArray[np.int32], parts: Strata, found: Labelling
+    points: Floats, cells: Ints, parts: Strata, found: Labelling
 ) -> tuple[Mesh, PlexLabels]:
     dim = parts.dim
     arrays: dict[str, Any] = {}
@@ -141,9 +141,9 @@ def _tagged(
     return mesh, PlexLabels(names=found.names, pairs=pairs, corners=at, completed=found.completed)
 
 
-def _members(mesh: Mesh, labels: PlexLabels, parts: Strata) -> dict[Pair, dict[int, Long]]:
+def _members(mesh: Mesh, labels: PlexLabels, parts: Strata) -> dict[Pair, dict[int, Longs]]:
     """Return the points with each label and value, by dimension."""
-    members: defaultdict[Pair, dict[int, list[Long]]] = defaultdict(lambda: defaultdict(list))
+    members: defaultdict[Pair, dict[int, list[Longs]]] = defaultdict(lambda: defaultdict(list))
     tagged = {mesh.dim: (np.arange(mesh.n_cells), mesh.cell_tags)}
     tagged[mesh.dim - 1] = (parts.find(mesh.facets), mesh.facet_tags)
     if mesh.dim == 3:

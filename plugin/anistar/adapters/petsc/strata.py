@@ -11,12 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import AnyArray, Longs
 from ...meshes.topology import RowKeys
 from .library import cones
-
-Long = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +29,15 @@ class Strata:
         For each dimension k, the vertices of its points in increasing order, counted from 0.
     """
 
-    starts: Long
-    vertices: tuple[Long, ...]
+    starts: Longs
+    vertices: tuple[Longs, ...]
 
     @property
     def dim(self) -> int:
         """Dimension of the cells."""
         return len(self.vertices) - 1
 
-    def find(self, simplices: NDArray[Any]) -> Long:
+    def find(self, simplices: AnyArray) -> Longs:
         """Return the row of each simplex among those of its dimension, -1 where there is none."""
         table = self.vertices[simplices.shape[1] - 1]
         encoder = RowKeys(table, len(self.vertices[0]))
@@ -50,7 +48,7 @@ class Strata:
         found = order[np.searchsorted(keys[order], wanted).clip(max=len(keys) - 1)]
         return np.where(keys[found] == wanted, found, -1)
 
-    def faces(self, simplices: Long, dim: int) -> Long:
+    def faces(self, simplices: Longs, dim: int) -> Longs:
         """Return the rows of all faces of one dimension that the simplices have."""
         columns = list(itertools.combinations(range(simplices.shape[1]), dim + 1))
         return np.unique(self.find(simplices[:, columns].reshape(-1, dim + 1)))
@@ -87,14 +85,14 @@ def strata(plex: Any) -> Strata:
     return Strata(ranges[:, 0], tuple(rows))
 
 
-def _refuse_other_than_simplices(plex: Any, dim: int, span: Long) -> None:
+def _refuse_other_than_simplices(plex: Any, dim: int, span: Longs) -> None:
     simplex = {2: 3, 3: 6}[dim]  # DM_POLYTOPE_TRIANGLE, DM_POLYTOPE_TETRAHEDRON
     if plex.getStratumSize("celltype", simplex) != span[1] - span[0]:
         kind = {2: "triangles", 3: "tetrahedra"}[dim]
         raise TypeError(f"the DMPlex has {dim}-dimensional points other than {kind}")
 
 
-def _cone_offsets(ranges: Long, sizes: Long) -> Long:
+def _cone_offsets(ranges: Longs, sizes: Longs) -> Longs:
     """Return where the cones of each dimension begin; points are numbered stratum by stratum."""
     order = np.argsort(ranges[:, 0], kind="stable")
     lengths = ((ranges[:, 1] - ranges[:, 0]) * sizes)[order]
@@ -103,6 +101,6 @@ def _cone_offsets(ranges: Long, sizes: Long) -> Long:
     return begin
 
 
-def _distinct(repeated: Long, count: int) -> Long:
+def _distinct(repeated: Longs, count: int) -> Longs:
     """Return the distinct vertices of each row, each of which occurs equally often."""
     return np.sort(repeated, axis=1)[:, :: repeated.shape[1] // count]

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...arrays import Floats
 from .library import PETSc
 
-Float = NDArray[np.float64]
 
-
-def from_vec(plex: Any, vec: Any) -> Float:
+def from_vec(plex: Any, vec: Any) -> Floats:
     """Return the nodal values of a P1 field.
 
     Parameters
@@ -56,7 +55,7 @@ def to_vec(plex: Any, values: ArrayLike) -> Any:
     return vec
 
 
-def metric_from_vec(plex: Any, vec: Any) -> Float:
+def metric_from_vec(plex: Any, vec: Any) -> Floats:
     """Return the (n, d, d) metric of a metric vector of PETSc, of any of its three kinds.
 
     PETSc stores a full d x d block at each vertex, or one value there if the DM's metric is

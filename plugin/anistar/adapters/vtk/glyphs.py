@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
+from ...arrays import Floats, Longs
 from ...meshes.mesh import Mesh
 from ...metric import check_metric
-
-Float = NDArray[np.float64]
-Long = NDArray[np.int64]
 
 
 def metric_glyphs(
@@ -56,13 +54,13 @@ def metric_glyphs(
     return _surface(points.reshape(-1, mesh.dim), rows.reshape(-1, cells.shape[1]))
 
 
-def _unit_circle(sides: int = 32) -> tuple[Float, Long]:
+def _unit_circle(sides: int = 32) -> tuple[Floats, Longs]:
     """Return points on the unit circle, and one closed polygon."""
     angles = np.linspace(0.0, 2 * np.pi, sides, endpoint=False)
     return np.stack([np.cos(angles), np.sin(angles)], axis=1), np.arange(sides)[None]
 
 
-def _unit_sphere() -> tuple[Float, Long]:
+def _unit_sphere() -> tuple[Floats, Longs]:
     """Return points on the unit sphere, and triangles."""
     source = vtkSphereSource()
     source.SetRadius(1.0)
@@ -74,7 +72,7 @@ def _unit_sphere() -> tuple[Float, Long]:
     return vtk_to_numpy(sphere.GetPoints().GetData()).astype(np.float64), rows.astype(np.int64)
 
 
-def _surface(points: Float, rows: Long) -> vtkPolyData:
+def _surface(points: Floats, rows: Longs) -> vtkPolyData:
     """Return polygons as polydata; in the plane z = 0 if the points have two coordinates."""
     coordinates = vtkPoints()
     coordinates.SetData(numpy_to_vtk(np.pad(points, ((0, 0), (0, 3 - points.shape[1])))))

@@ -12,12 +12,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 
+from ...arrays import AnyArray
 from ...formats.content.assembly import assembled
 from ...formats.content.export import exported
 from ...formats.content.raw import RawMesh
@@ -121,14 +122,14 @@ def _content(grid: Any) -> RawMesh:
     return raw
 
 
-def _add(data: Any, arrays: Mapping[str, NDArray[Any]]) -> None:
+def _add(data: Any, arrays: Mapping[str, AnyArray]) -> None:
     for name, values in arrays.items():
         array = numpy_to_vtk(np.ascontiguousarray(values))
         array.SetName(name)
         data.AddArray(array)
 
 
-def _arrays(data: Any) -> dict[str, NDArray[Any]]:
+def _arrays(data: Any) -> dict[str, AnyArray]:
     found = {}
     for i in range(data.GetNumberOfArrays()):
         array = data.GetArray(i)

@@ -6,12 +6,12 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from ...arrays import Floats
 from ...formats import ReadReport, read, read_metric, read_with_report, write
 from ...judging.cell_arrays import cell_arrays
 from ...judging.certificate import Certificate, certify
 from ...judging.quality import quality
 from ...meshes.mesh import Mesh
-from ...meshes.topology import Float
 from ...meshes.validation import validate
 from ...meshes.violations import Violation
 from ...metric import check_metric
@@ -76,7 +76,7 @@ def _check_targets(arguments: argparse.Namespace) -> None:
             check(path)
 
 
-def _write(arguments: argparse.Namespace, mesh: Mesh, M: Float, certificate: Certificate) -> None:
+def _write(arguments: argparse.Namespace, mesh: Mesh, M: Floats, certificate: Certificate) -> None:
     if arguments.output:
         inputs = (arguments.input, arguments.reference, arguments.metric)
         replaced = replaced_inputs(inputs, Path(arguments.output))

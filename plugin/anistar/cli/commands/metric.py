@@ -7,9 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Floats
 from ...formats import read, write_metric
 from ...loops.adapt import metric_field_names
 from ...meshes.mesh import Mesh
@@ -36,8 +34,6 @@ from .metric_sources import add_source_arguments, has_sources, sources
 
 SUMMARY = "make a metric of fields, sizes or other metrics and write it, without remeshing"
 EXAMPLE = "anistar metric in.vtu --field u --target-complexity 10000 -o metric.sol"
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,13 @@ import argparse
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Floats
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ...metric import MetricOptions, dwr_metric, goal_metric, recover_hessian
 from ...metric.pipeline.finishing import finishing_on
 from ...metric.pipeline.target import aimed_at
-
-Floats = NDArray[np.float64]
 
 
 def add_goal_arguments(parser: argparse.ArgumentParser) -> None:

@@ -5,9 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Floats
 from ...formats import read_metric
 from ...meshes.mesh import Mesh
 from ...metric import (
@@ -21,8 +19,6 @@ from ...metric import (
 )
 from ...metric.tensors.checks import REPAIRS
 from ..options import numbers
-
-Floats = NDArray[np.float64]
 
 
 def add_source_arguments(parser: argparse.ArgumentParser) -> None:

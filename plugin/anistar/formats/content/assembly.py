@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from ...arrays import AnyArray
 from ...errors import FormatError
 from ...meshes.fields import Field, Kind
 from ...meshes.mesh import Mesh
 from ...meshes.violations import point_violations, volume_signs
 from ...metric.tensors.orders import from_components
-from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Array, Block, RawMesh
+from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Block, RawMesh
 
 _log = logging.getLogger(__name__)
 
@@ -104,11 +105,11 @@ def _assembled(raw: RawMesh, path: Path) -> tuple[Mesh, dict[str, Field], ReadRe
 
 
 def _lower_arrays(
-    blocks: dict[int, Block], dim: int, used: Array, notes: list[str]
-) -> tuple[dict[str, Array], int]:
+    blocks: dict[int, Block], dim: int, used: AnyArray, notes: list[str]
+) -> tuple[dict[str, AnyArray], int]:
     """Return facets and ridges with their tags, each once, and how many were repeated."""
     number = np.cumsum(used) - 1
-    arrays: dict[str, Array] = {}
+    arrays: dict[str, AnyArray] = {}
     repeated = 0
     for below, name in enumerate(("facet", "edge")[: dim - 1], start=1):
         rows, tags, count, clash = _unrepeated(blocks[dim - below])
@@ -120,7 +121,7 @@ def _lower_arrays(
     return arrays, repeated
 
 
-def _corners(raw: RawMesh, vertices: Block, used: Array) -> Array:
+def _corners(raw: RawMesh, vertices: Block, used: AnyArray) -> AnyArray:
     corners = np.unique(np.r_[raw.corners, vertices.rows.ravel()].astype(np.int64))
     inside = (corners >= 0) & (corners < len(used))
     if not inside.all():
@@ -128,7 +129,7 @@ def _corners(raw: RawMesh, vertices: Block, used: Array) -> Array:
     return np.asarray(corners[used[corners]])
 
 
-def _note(notes: list[str], mask: Array, text: str) -> None:
+def _note(notes: list[str], mask: AnyArray, text: str) -> None:
     if mask.any():
         notes.append(f"{mask.sum()} {text} {np.argmax(mask)}")
 
@@ -163,7 +164,7 @@ def _merged(raw: RawMesh, dim: int) -> Block:
     )
 
 
-def _tags(block: Block) -> Array:
+def _tags(block: Block) -> AnyArray:
     return np.zeros(len(block.rows), np.int64) if block.tags is None else block.tags
 
 
@@ -178,7 +179,7 @@ def _check_indices(block: Block, n_points: int) -> None:
         )
 
 
-def _in_dimension(points: Array, dim: int, cells: Array) -> Array:
+def _in_dimension(points: AnyArray, dim: int, cells: AnyArray) -> AnyArray:
     if points.shape[1] == dim:
         return points
     if points.shape[1] < dim:
@@ -194,14 +195,14 @@ def _in_dimension(points: Array, dim: int, cells: Array) -> Array:
     return points[:, :2]
 
 
-def _flipped(points: Array, cells: Array) -> tuple[Array, Array]:
+def _flipped(points: AnyArray, cells: AnyArray) -> tuple[AnyArray, AnyArray]:
     _, inverted = volume_signs(points, cells)
     turned = cells.copy()
     turned[inverted, -2:] = cells[inverted, :-3:-1]
     return turned, inverted
 
 
-def _unrepeated(block: Block) -> tuple[Array, Array, int, int]:
+def _unrepeated(block: Block) -> tuple[AnyArray, AnyArray, int, int]:
     """Return rows and tags without repetitions, how many there were, and how many disagreed."""
     tags = _tags(block)
     if len(block.rows) == 0:
@@ -215,7 +216,7 @@ def _unrepeated(block: Block) -> tuple[Array, Array, int, int]:
     return block.rows[keep], tags[keep], len(tags) - len(keep), clash
 
 
-def _require_used(name: str, rows: Array, used: Array) -> None:
+def _require_used(name: str, rows: AnyArray, used: AnyArray) -> None:
     bad = ~used[rows].all(axis=1)
     if bad.any():
         at = int(np.argmax(bad))
@@ -223,7 +224,7 @@ def _require_used(name: str, rows: Array, used: Array) -> None:
         raise ValueError(f"{name} {at} has point {point}, which belongs to no cell")
 
 
-def _fields(raw: RawMesh, cells: Block, used: Array, dim: int) -> dict[str, Field]:
+def _fields(raw: RawMesh, cells: Block, used: AnyArray, dim: int) -> dict[str, Field]:
     fields: dict[str, Field] = {}
     for name, values in raw.point_data.items():
         if len(values) != len(used):
@@ -247,11 +248,11 @@ def _add(fields: dict[str, Field], name: str, field: Field) -> None:
     fields[name] = field
 
 
-def _kind(raw: RawMesh, name: str, array: Array) -> Kind | None:
+def _kind(raw: RawMesh, name: str, array: AnyArray) -> Kind | None:
     return "label" if name in raw.labels and array.dtype.kind in "iu" else None
 
 
-def _split(raw: RawMesh, name: str, values: Array, dim: int) -> dict[str, Array]:
+def _split(raw: RawMesh, name: str, values: AnyArray, dim: int) -> dict[str, AnyArray]:
     """Return the array as scalar, vector or tensor; as one scalar a column if it is none."""
     if values.dtype.kind not in "biuf":
         raise ValueError(f"field {name!r} holds {values.dtype}, not real numbers")

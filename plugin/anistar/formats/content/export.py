@@ -6,9 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ...arrays import AnyArray
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
-from .raw import KIND_OF_DIM, Array, Block, RawMesh
+from .raw import KIND_OF_DIM, Block, RawMesh
 
 
 def exported(mesh: Mesh, fields: Mapping[str, Field]) -> RawMesh:
@@ -39,7 +40,7 @@ def exported(mesh: Mesh, fields: Mapping[str, Field]) -> RawMesh:
     )
 
 
-def padded(field: Field) -> Array:
+def padded(field: Field) -> AnyArray:
     """Return (n,), (n, 3) or (n, 9) values: the third direction is filled with zeros."""
     values = field.values
     if values.ndim == 1:
@@ -47,7 +48,7 @@ def padded(field: Field) -> Array:
     return _in_space(values).reshape(len(values), -1)
 
 
-def _in_space(values: Array) -> Array:
+def _in_space(values: AnyArray) -> AnyArray:
     """Return vectors or tensors with three directions; the same array if it has them."""
     missing = 3 - values.shape[1]
     if missing == 0:
@@ -55,6 +56,6 @@ def _in_space(values: Array) -> Array:
     return np.pad(values, [(0, 0)] + [(0, missing)] * (values.ndim - 1))
 
 
-def _no_value(values: Array, count: int) -> Array:
+def _no_value(values: AnyArray, count: int) -> AnyArray:
     fill = 0 if values.dtype.kind in "iu" else np.nan
     return np.full((count, *values.shape[1:]), fill, dtype=values.dtype)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...meshes.topology import Float
-
-Array = NDArray[Any]
+from ...arrays import AnyArray, Floats
 
 KIND_DIM = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
 KIND_OF_DIM = {dim: kind for kind, dim in KIND_DIM.items()}
@@ -45,9 +42,9 @@ class Block:
     """Elements of one kind: (k, nodes) point indices from 0 and (k,) tags."""
 
     kind: str
-    rows: Array
-    tags: Array | None = None
-    data: dict[str, Array] = field(default_factory=dict)
+    rows: AnyArray
+    tags: AnyArray | None = None
+    data: dict[str, AnyArray] = field(default_factory=dict)
 
 
 @dataclass
@@ -70,11 +67,11 @@ class RawMesh:
         What was ignored while reading.
     """
 
-    points: Float
+    points: Floats
     blocks: list[Block]
-    corners: Array = field(default_factory=lambda: np.zeros(0, np.int64))
+    corners: AnyArray = field(default_factory=lambda: np.zeros(0, np.int64))
     names: dict[tuple[int, int], str] = field(default_factory=dict)
-    point_data: dict[str, Array] = field(default_factory=dict)
+    point_data: dict[str, AnyArray] = field(default_factory=dict)
     six: Literal["vtk", "xdmf"] | None = None
     labels: set[str] = field(default_factory=set)
     warnings: list[str] = field(default_factory=list)

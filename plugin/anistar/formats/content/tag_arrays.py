@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ...arrays import AnyArray
 from ...errors import FormatError
 from ..parsing.reading import reading
 from .notes import Names, names_of, note_of
-from .raw import Array, RawMesh
+from .raw import RawMesh
 
 # The integer array of tags in the files that we write; where it is present no other counts.
 TAGS = "medit:ref"
@@ -89,7 +90,7 @@ def _tag_key(raw: RawMesh) -> str | None:
     return None
 
 
-def _holds_integers(values: Array) -> bool:
+def _holds_integers(values: AnyArray) -> bool:
     if values.size != len(values):
         return False
     # Some formats store integers as floats.

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...arrays import AnyArray
 from ..content.notes import labels_of, note_of
-from ..content.raw import Array, RawMesh
+from ..content.raw import RawMesh
 from ..parsing.allowance import Allowance
 from ..parsing.numbering import Numbering
 from .elements import Elements
@@ -27,8 +28,8 @@ class Data:
 
     name: str
     step: int
-    numbers: Array
-    values: Array
+    numbers: AnyArray
+    values: AnyArray
 
 
 @dataclass
@@ -106,7 +107,7 @@ def add_node_data(raw: RawMesh, nodes: Numbering, data: Data, allowance: Allowan
     raw.point_data[data.name] = full
 
 
-def _unset(n_rows: int, data: Data, allowance: Allowance) -> Array:
+def _unset(n_rows: int, data: Data, allowance: Allowance) -> AnyArray:
     shape = (n_rows, *data.values.shape[1:])
     allowance.spend(np.dtype(np.float64).itemsize * math.prod(shape))
     return np.full(shape, np.nan)

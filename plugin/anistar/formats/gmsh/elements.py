@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..content.raw import Array, Block
+from ...arrays import AnyArray
+from ..content.raw import Block
 from ..parsing.numbering import Numbering
 
 # Gmsh's element type -> kind and number of nodes.
@@ -41,10 +42,10 @@ class Elements:
     """
 
     kind: str
-    numbers: Array
-    nodes: Array
-    physical: Array
-    entity: Array
+    numbers: AnyArray
+    nodes: AnyArray
+    physical: AnyArray
+    entity: AnyArray
 
 
 def kind_and_width(number: int) -> tuple[str, int]:

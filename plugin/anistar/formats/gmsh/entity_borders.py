@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...meshes.topology import Float
-from ..content.raw import Array, Block, RawMesh
+from ...arrays import AnyArray, Floats
+from ..content.raw import Block, RawMesh
 
 # Pieces that meet at a smaller angle go on smoothly: the tangent of half of 5 degrees.
 LEAST_TURN = 0.0437
@@ -21,7 +21,7 @@ STANDING_OUT = 1.2
 SHARP_TURN = 0.4142
 
 
-def keep_borders(raw: RawMesh, entities: list[Array]) -> None:
+def keep_borders(raw: RawMesh, entities: list[AnyArray]) -> None:
     """Add ridges, in 2D corners, to a mesh where its boundary turns between two entities.
 
     Parameters
@@ -52,13 +52,15 @@ def keep_borders(raw: RawMesh, entities: list[Array]) -> None:
         raw.blocks.append(Block("line", new, np.zeros(len(new), np.int64)))
 
 
-def _rows_not_in(edges: Array, others: Array) -> Array:
+def _rows_not_in(edges: AnyArray, others: AnyArray) -> AnyArray:
     _, row = np.unique(np.concatenate([others, edges]), axis=0, return_inverse=True)
     known, asked = np.split(row.ravel(), [len(others)])
     return np.asarray(edges[~np.isin(asked, known)])
 
 
-def border_corners(points: Float, facets: Array, tags: Array, entities: Array) -> Array:
+def border_corners(
+    points: Floats, facets: AnyArray, tags: AnyArray, entities: AnyArray
+) -> AnyArray:
     """Return the points where two curves with one tag meet and turn more than beside them.
 
     Parameters
@@ -85,7 +87,7 @@ def border_corners(points: Float, facets: Array, tags: Array, entities: Array) -
     return np.asarray(joint[is_border & (turn[joint] > beside)])
 
 
-def border_ridges(points: Float, facets: Array, tags: Array, entities: Array) -> Array:
+def border_ridges(points: Floats, facets: AnyArray, tags: AnyArray, entities: AnyArray) -> AnyArray:
     """Return the edges of a surface at which two entities with one tag meet and it turns.
 
     Parameters
@@ -120,7 +122,7 @@ def border_ridges(points: Float, facets: Array, tags: Array, entities: Array) ->
     return np.asarray(edges[(_medians(turn, border) > least)[border]])
 
 
-def _medians(values: Float, group: Array) -> Float:
+def _medians(values: Floats, group: AnyArray) -> Floats:
     """Return the median of the values of each group; groups are numbered from 0."""
     ordered = values[np.lexsort((values, group))]
     count = np.bincount(group)
@@ -128,7 +130,7 @@ def _medians(values: Float, group: Array) -> Float:
     return np.asarray((ordered[start + (count - 1) // 2] + ordered[start + count // 2]) / 2)
 
 
-def _folds(facets: Array) -> tuple[Array, Array]:
+def _folds(facets: AnyArray) -> tuple[AnyArray, AnyArray]:
     """Return the edges at which two facets meet, and the rows of the two."""
     sides = np.sort(np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]]), 1)
     edges, edge, count = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
@@ -139,7 +141,7 @@ def _folds(facets: Array) -> tuple[Array, Array]:
     return edges[count == 2], pairs
 
 
-def _half_tangents(points: Float, facets: Array, edges: Array, pairs: Array) -> Float:
+def _half_tangents(points: Floats, facets: AnyArray, edges: AnyArray, pairs: AnyArray) -> Floats:
     """Return the tangent of half of the angle by which the surface turns at each edge."""
     corners = points[facets]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -149,7 +151,7 @@ def _half_tangents(points: Float, facets: Array, edges: Array, pairs: Array) -> 
     return _half_tangent(u, v)
 
 
-def _half_tangent(u: Float, v: Float) -> Float:
+def _half_tangent(u: Floats, v: Floats) -> Floats:
     """Return the tangent of half of the angle between vectors."""
     cosine = (u * v).sum(axis=1)
     squares = np.square(u).sum(axis=1) * np.square(v).sum(axis=1)
@@ -157,7 +159,7 @@ def _half_tangent(u: Float, v: Float) -> Float:
     return np.asarray(sine / np.maximum(np.sqrt(squares) + cosine, np.finfo(float).tiny))
 
 
-def _runs_along(facets: Array, edges: Array) -> Array:
+def _runs_along(facets: AnyArray, edges: AnyArray) -> AnyArray:
     """Tell which facets have the ends of their edge in its order."""
     first = (facets == edges[:, :1]).argmax(axis=1)
     second = (facets == edges[:, 1:]).argmax(axis=1)

@@ -12,8 +12,9 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ...arrays import AnyArray
 from ..content.notes import Names
-from ..content.raw import Array, RawMesh, not_read
+from ..content.raw import RawMesh, not_read
 from ..parsing.allowance import Allowance
 from ..parsing.numbering import Numbering
 from ..parsing.reading import reading
@@ -50,7 +51,7 @@ class _Content:
     """What was read so far; `runs` have the entity of each in version 4."""
 
     allowance: Allowance
-    nodes: tuple[Array, Array] | None = None
+    nodes: tuple[AnyArray, AnyArray] | None = None
     runs: list[Elements] | None = None
     placed: list[tuple[tuple[int, int], Elements]] | None = None
     groups: version4.Groups | None = None

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..content.raw import Array
+from ...arrays import AnyArray
 from ..parsing.cursor import Cursor, Order
 from ..parsing.rows import leading_rows
 from ..parsing.text_rows import integers, parsed
@@ -57,7 +57,7 @@ class TextStream:
         self._name = name
         self._body = body.removeprefix("\n")
         self._at = 0
-        self._numbers: Array | None = None
+        self._numbers: AnyArray | None = None
 
     def line(self) -> str:
         """Return the next line that is not blank, nothing at the end."""
@@ -69,7 +69,7 @@ class TextStream:
             self._at = min(end + 1, len(self._body))
         return line
 
-    def ints(self, count: int) -> Array:
+    def ints(self, count: int) -> AnyArray:
         """Return the next tags or types."""
         numbers = self.reals(count)
         try:
@@ -77,15 +77,15 @@ class TextStream:
         except ValueError as error:
             raise ValueError(f"the section {self._name} {error}") from error
 
-    def all_ints(self) -> Array:
+    def all_ints(self) -> AnyArray:
         """Return all numbers that are left."""
         return self.ints(len(self._parsed()))
 
-    def sizes(self, count: int) -> Array:
+    def sizes(self, count: int) -> AnyArray:
         """Return the next counts or numbers of nodes."""
         return self.ints(count)
 
-    def reals(self, count: int) -> Array:
+    def reals(self, count: int) -> AnyArray:
         """Return the next coordinates or values."""
         numbers = self._parsed()
         if not 0 <= count <= len(numbers):
@@ -95,7 +95,7 @@ class TextStream:
         self._numbers = numbers[count:]
         return numbers[:count]
 
-    def table(self, count: int, width: int) -> tuple[Array, Array]:
+    def table(self, count: int, width: int) -> tuple[AnyArray, AnyArray]:
         """Return rows of an integer and `width` reals: the integers, and the reals."""
         rows = self.reals(count * (1 + width)).reshape(count, 1 + width)
         return integers(rows[:, 0]), rows[:, 1:]
@@ -112,7 +112,7 @@ class TextStream:
                 f"the section {self._name} has {len(self._parsed())} more numbers than it announces"
             )
 
-    def _parsed(self) -> Array:
+    def _parsed(self) -> AnyArray:
         if self._numbers is None:
             try:
                 self._numbers = parsed(self.rest())
@@ -133,18 +133,18 @@ class BinaryStream:
         """Return the next line."""
         return self._cursor.line()
 
-    def ints(self, count: int) -> Array:
+    def ints(self, count: int) -> AnyArray:
         """Return the next tags or types."""
         return self._cursor.take("i4", count).astype(np.int64)
 
-    def peek_ints(self, count: int) -> Array:
+    def peek_ints(self, count: int) -> AnyArray:
         """Return the next tags or types without going on."""
         at = self._cursor.at
         values = self.ints(count)
         self._cursor.at = at
         return values
 
-    def alike_ints(self, width: int, n_alike: int, most: int) -> Array:
+    def alike_ints(self, width: int, n_alike: int, most: int) -> AnyArray:
         """Return the next rows that begin alike, `most` at most."""
         cursor, item = self._cursor, np.dtype("i4").itemsize
         n_left = (len(cursor.data) - cursor.at) // item
@@ -154,15 +154,15 @@ class BinaryStream:
         cursor.at = start + item * rows.size
         return rows.astype(np.int64)
 
-    def sizes(self, count: int) -> Array:
+    def sizes(self, count: int) -> AnyArray:
         """Return the next counts or numbers of nodes."""
         return self._cursor.take(self._size, count).astype(np.int64)
 
-    def reals(self, count: int) -> Array:
+    def reals(self, count: int) -> AnyArray:
         """Return the next coordinates or values."""
         return self._cursor.take("f8", count).astype(np.float64)
 
-    def table(self, count: int, width: int) -> tuple[Array, Array]:
+    def table(self, count: int, width: int) -> tuple[AnyArray, AnyArray]:
         """Return rows of an integer and `width` reals: the integers, and the reals."""
         layout = np.dtype([("number", "i4"), ("values", "f8", (width,))])
         rows = self._cursor.take(layout, count)

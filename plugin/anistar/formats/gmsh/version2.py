@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..content.raw import Array
+from ...arrays import AnyArray
 from ..parsing.rows import leading_rows
 from .elements import Elements, kind_and_width
 from .streams import BinaryStream, Stream, TextStream
@@ -13,7 +13,7 @@ _TEXT_HEAD, _BINARY_HEAD = 3, 3
 _NUMBER, _TYPE, _N_TAGS = 0, 1, 2
 
 
-def read_nodes(stream: Stream) -> tuple[Array, Array]:
+def read_nodes(stream: Stream) -> tuple[AnyArray, AnyArray]:
     """Return numbers and points."""
     count = counted(stream, "Nodes")
     numbers, points = stream.table(count, 3)
@@ -90,7 +90,7 @@ def _checked_n_tags(n_tags: int) -> int:
     return n_tags
 
 
-def _run(kind: str, numbers: Array, rest: Array, n_tags: int) -> Elements:
+def _run(kind: str, numbers: AnyArray, rest: AnyArray, n_tags: int) -> Elements:
     none = np.zeros(len(numbers), np.int64)
     physical = rest[:, 0] if n_tags > 0 else none
     entity = rest[:, 1] if n_tags > 1 else none

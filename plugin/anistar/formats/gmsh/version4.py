@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..content.raw import Array
+from ...arrays import AnyArray
 from .elements import Elements, kind_and_width
 from .streams import Stream
 
@@ -48,7 +48,7 @@ def read_entities(stream: Stream, version: str) -> Groups:
     return groups
 
 
-def read_nodes(stream: Stream, version: str) -> tuple[Array, Array]:
+def read_nodes(stream: Stream, version: str) -> tuple[AnyArray, AnyArray]:
     """Return numbers and points."""
     n_blocks, total = _head(stream, version)
     numbers, points = [np.zeros(0, np.int64)], [np.zeros((0, 3))]

@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ...arrays import AnyArray
 from ...atomic import replaced
 from ...errors import FormatError
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ..content.export import exported, padded
-from ..content.raw import Array, RawMesh
+from ..content.raw import RawMesh
 from ..parsing.text_rows import printed
 from .data import comment
 
@@ -62,7 +63,7 @@ def _elements(content: RawMesh) -> list[str]:
     return [*parts, "$EndElements\n"]
 
 
-def _data(section: str, name: str, values: Array) -> list[str]:
+def _data(section: str, name: str, values: AnyArray) -> list[str]:
     components = values.shape[1] if values.ndim > 1 else 1
     numbers = np.arange(1, len(values) + 1)
     head = f'${section}\n1\n"{name}"\n1\n0\n3\n0\n{components}\n{len(values)}\n'

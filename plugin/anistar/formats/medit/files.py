@@ -12,13 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
+from ...arrays import AnyArray
 from ...atomic import all_replaced, replaced
 from ...errors import FormatError
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ...metric.tensors.orders import to_components
 from ..content.notes import names_of
-from ..content.raw import Array, Block, RawMesh, not_read
+from ..content.raw import Block, RawMesh, not_read
 from ..parsing.reading import reading
 from ..suffixes import BINARY, SOLUTION_OF, solution_beside, suffix_of
 from . import gmf
@@ -66,7 +67,7 @@ def _mesh(container: Container) -> RawMesh:
     return raw
 
 
-def _tables(container: Container, kinds: Mapping[str, str]) -> list[tuple[str, Array]]:
+def _tables(container: Container, kinds: Mapping[str, str]) -> list[tuple[str, AnyArray]]:
     return [
         (kind, container.tables[keyword])
         for keyword, kind in kinds.items()
@@ -160,7 +161,7 @@ def _solution_container(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> 
     return container
 
 
-def _columns(path: Path, name: str, field: Field) -> Array:
+def _columns(path: Path, name: str, field: Field) -> AnyArray:
     if field.kind == "tensor":
         try:
             return to_components(field.values, "medit")

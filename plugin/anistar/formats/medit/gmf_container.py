@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ...arrays import Floats, Longs
 
 # keyword -> (code, integers in a row); Vertices and SolAt* have their own layout.
 ENTITIES = {
@@ -60,7 +61,7 @@ class Solution:
     """Fields on one kind of entity: type codes (1 scalar, 2 vector, 3 tensor) and all columns."""
 
     types: list[int]
-    values: NDArray[np.float64]
+    values: Floats
 
 
 @dataclass
@@ -79,14 +80,14 @@ class Container:
     """
 
     dim: int
-    points: NDArray[np.float64] | None = None
-    point_refs: NDArray[np.int64] | None = None
-    tables: dict[str, NDArray[np.int64]] = field(default_factory=dict)
+    points: Floats | None = None
+    point_refs: Longs | None = None
+    tables: dict[str, Longs] = field(default_factory=dict)
     solutions: dict[str, Solution] = field(default_factory=dict)
     notes: dict[str, Any] = field(default_factory=dict)
     skipped: list[str] = field(default_factory=list)
 
-    def references(self) -> NDArray[np.int64]:
+    def references(self) -> Longs:
         """Return the references of the points, zeros where there are none."""
         if self.point_refs is not None:
             return self.point_refs

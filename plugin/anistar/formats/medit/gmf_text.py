@@ -7,8 +7,8 @@ import re
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Floats, Longs
 from ..content.notes import note_of
 from ..parsing.text_rows import integers, parsed, printed
 from .gmf_container import (
@@ -101,7 +101,7 @@ def _dimension(body: str) -> int:
     return checked_dim(int(_integers("Dimension", first)[0]))
 
 
-def _numbers(keyword: str, body: str) -> NDArray[np.float64]:
+def _numbers(keyword: str, body: str) -> Floats:
     try:
         numbers = parsed(body)
     except ValueError as error:
@@ -111,14 +111,14 @@ def _numbers(keyword: str, body: str) -> NDArray[np.float64]:
     return numbers
 
 
-def _integers(keyword: str, numbers: NDArray[np.float64]) -> NDArray[np.int64]:
+def _integers(keyword: str, numbers: Floats) -> Longs:
     try:
         return integers(numbers)
     except ValueError as error:
         raise ValueError(f"{keyword} {error}") from error
 
 
-def _table(keyword: str, numbers: NDArray[np.float64], width: int) -> NDArray[np.float64]:
+def _table(keyword: str, numbers: Floats, width: int) -> Floats:
     count = int(_integers(keyword, numbers[:1])[0])
     if count < 0 or len(numbers) - 1 != count * width:
         raise ValueError(
@@ -128,7 +128,7 @@ def _table(keyword: str, numbers: NDArray[np.float64], width: int) -> NDArray[np
     return numbers[1:].reshape(count, width)
 
 
-def _solution(keyword: str, numbers: NDArray[np.float64], dim: int) -> Solution:
+def _solution(keyword: str, numbers: Floats, dim: int) -> Solution:
     n_types = int(_integers(keyword, numbers[1:2])[0]) if len(numbers) > 1 else 0
     if not 0 < n_types <= len(numbers) - 2:
         raise ValueError(f"{keyword} announces {n_types} fields, which it does not have")

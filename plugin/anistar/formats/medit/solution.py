@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...arrays import AnyArray
 from ...metric.tensors.orders import from_components
 from ..content.notes import fields_of
-from ..content.raw import Array
 from .gmf_container import Container, columns_of
 
 _PLACES = {"SolAtVertices": "points", "SolAtTriangles": "cells", "SolAtTetrahedra": "cells"}
@@ -45,13 +45,13 @@ class MeditSolution:
             name for fields in self._listed.values() for name, kind in fields if kind == "label"
         }
 
-    def arrays(self, keyword: str) -> dict[str, Array]:
+    def arrays(self, keyword: str) -> dict[str, AnyArray]:
         """Return the fields of one section by name: (k,), (k, d) or (k, d, d) arrays."""
         solution = self._solutions.get(keyword)
         if solution is None:
             return {}
         listed = [name for name, _ in self._listed.get(_PLACES[keyword], [])]
-        arrays: dict[str, Array] = {}
+        arrays: dict[str, AnyArray] = {}
         at = 0
         for i, width in enumerate(columns_of(solution.types, self.dim)):
             values = solution.values[:, at : at + width]
@@ -60,7 +60,7 @@ class MeditSolution:
             arrays[name] = self._shaped(values, solution.types[i])
         return arrays
 
-    def _shaped(self, values: Array, code: int) -> Array:
+    def _shaped(self, values: AnyArray, code: int) -> AnyArray:
         if code == _SCALAR:
             return values[:, 0].copy()
         if code == _TENSOR:

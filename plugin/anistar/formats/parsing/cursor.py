@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ...arrays import AnyArray
 
 Order = Literal["<", ">"]
 _BLANKS = b" \t\r\n"
@@ -26,7 +27,7 @@ class Cursor:
         self.order = order
         self.at = 0
 
-    def take(self, kind: str | np.dtype[Any], count: int) -> NDArray[Any]:
+    def take(self, kind: str | np.dtype[Any], count: int) -> AnyArray:
         """Return the next `count` numbers; what the file cannot hold takes no memory.
 
         Raises

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-from ..content.raw import Array
+from ...arrays import AnyArray
 from .text_rows import integers
 
 
@@ -27,7 +24,7 @@ class Numbering:
         If a number is given twice.
     """
 
-    def __init__(self, what: str, numbers: NDArray[Any]) -> None:
+    def __init__(self, what: str, numbers: AnyArray) -> None:
         self._what = what
         numbers = integers(np.asarray(numbers, dtype=np.float64))
         self._order = np.argsort(numbers, kind="stable")
@@ -40,7 +37,7 @@ class Numbering:
     def __len__(self) -> int:
         return len(self._sorted)
 
-    def rows(self, wanted: NDArray[Any]) -> Array:
+    def rows(self, wanted: AnyArray) -> AnyArray:
         """Return the row of each number; raise ValueError on an unknown one."""
         wanted = integers(np.asarray(wanted, dtype=np.float64))
         at = np.searchsorted(self._sorted, wanted).clip(max=max(len(self._sorted) - 1, 0))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..content.raw import Array
+from ...arrays import AnyArray
 
 _FIRST_LOOK = 16
 
 
-def leading_rows(values: Array, at: int, width: int, alike: list[int]) -> Array:
+def leading_rows(values: AnyArray, at: int, width: int, alike: list[int]) -> AnyArray:
     """Return the longest run of rows from `at` that agree with the first one in some columns.
 
     The work is in proportion to what is returned.

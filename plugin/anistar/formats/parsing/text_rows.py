@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import DTypeLike
 
-from ...meshes.topology import Float
+from ...arrays import AnyArray, Floats, Longs
 
 
-def printed(*columns: NDArray[Any]) -> str:
+def printed(*columns: AnyArray) -> str:
     """Return one line for each row, the columns side by side, doubles with 17 digits."""
     tables = [column.reshape(len(column), -1) for column in columns]
     if len(tables[0]) == 0:
@@ -22,7 +21,7 @@ def printed(*columns: NDArray[Any]) -> str:
     return "\n".join([line % row for row in zip(*flat, strict=True)]) + "\n"
 
 
-def parsed(text: str, dtype: DTypeLike = np.float64) -> NDArray[Any]:
+def parsed(text: str, dtype: DTypeLike = np.float64) -> AnyArray:
     """Return the numbers in a text.
 
     Raises
@@ -40,7 +39,7 @@ def parsed(text: str, dtype: DTypeLike = np.float64) -> NDArray[Any]:
             raise ValueError("holds something that is not a number") from error
 
 
-def integers(numbers: Float) -> NDArray[np.int64]:
+def integers(numbers: Floats) -> Longs:
     """Return numbers as integers.
 
     Raises

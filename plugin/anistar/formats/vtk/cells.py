@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..content.raw import KIND_DIM, REFUSED, Array, Block
+from ...arrays import AnyArray
+from ..content.raw import KIND_DIM, REFUSED, Block
 
 KINDS = {
     1: "vertex",
@@ -36,7 +37,7 @@ def kind_of(number: int) -> str:
     return KINDS.get(number, f"VTK {number}")
 
 
-def types_and_rows(blocks: list[Block]) -> tuple[Array, Array, Array]:
+def types_and_rows(blocks: list[Block]) -> tuple[AnyArray, AnyArray, AnyArray]:
     """Return types, ends and points of the cells of all blocks, in their order."""
     sizes = [np.full(len(block.rows), KIND_DIM[block.kind] + 1, np.int64) for block in blocks]
     types = [np.full(len(block.rows), _TYPES[block.kind], np.uint8) for block in blocks]
@@ -45,7 +46,7 @@ def types_and_rows(blocks: list[Block]) -> tuple[Array, Array, Array]:
 
 
 def blocks_of(
-    types: Array, ends: Array, connectivity: Array, data: Mapping[str, Array]
+    types: AnyArray, ends: AnyArray, connectivity: AnyArray, data: Mapping[str, AnyArray]
 ) -> list[Block]:
     """Return one block for each type.
 
@@ -90,7 +91,7 @@ def blocks_of(
     return blocks
 
 
-def ends_of_rows(types: Array, rows: Array) -> tuple[Array, Array]:
+def ends_of_rows(types: AnyArray, rows: AnyArray) -> tuple[AnyArray, AnyArray]:
     """Return the points of all cells, and where each ends, of rows that begin with their length.
 
     Raises

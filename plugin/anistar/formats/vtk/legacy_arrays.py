@@ -7,7 +7,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from ..content.raw import Array
+from ...arrays import AnyArray
 from .legacy_numbers import LegacyNumbers
 
 _FIXED_WIDTHS = {
@@ -42,7 +42,7 @@ class Arrays:
     section: str = ""
     n_rows: int = 0
     has_codes: bool = True
-    kept: dict[str, Array] = field(default_factory=dict)
+    kept: dict[str, AnyArray] = field(default_factory=dict)
     skipped: list[str] = field(default_factory=list)
 
     def read(self, words: list[str], numbers: LegacyNumbers) -> None:
@@ -96,7 +96,7 @@ class Arrays:
     def _name(self, word: str) -> str:
         return unquote(word) if self.has_codes else word
 
-    def _keep(self, name: str, values: Array | None) -> None:
+    def _keep(self, name: str, values: AnyArray | None) -> None:
         if values is None:
             self.skipped.append(f"{self.section} {name}")
             return
@@ -112,7 +112,7 @@ class Arrays:
         self.kept[name] = values
 
 
-def _values(numbers: LegacyNumbers, kind: str, n_rows: int, width: int) -> Array | None:
+def _values(numbers: LegacyNumbers, kind: str, n_rows: int, width: int) -> AnyArray | None:
     """Return the next rows, none if they are words."""
     if kind.lower() == "string":
         numbers.skip_strings(n_rows * width)

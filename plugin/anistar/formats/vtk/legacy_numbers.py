@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..content.raw import Array
+from ...arrays import AnyArray
 from ..parsing.cursor import Cursor
 from ..parsing.text_rows import parsed
 
@@ -55,7 +55,7 @@ class LegacyNumbers:
         while not self._cursor.is_at_end and self._cursor.line():
             pass
 
-    def read(self, kind: str, count: int) -> Array:
+    def read(self, kind: str, count: int) -> AnyArray:
         """Return the next numbers of a type that is called as in the file."""
         if kind.lower() == "bit":
             return self._read_bits(count)
@@ -68,7 +68,7 @@ class LegacyNumbers:
         text = self._cursor.data[start : self._cursor.at].decode("ascii", errors="replace")
         return parsed(text, np.int64 if dtype[0] in "iu" else dtype).astype(dtype)
 
-    def _read_bits(self, count: int) -> Array:
+    def _read_bits(self, count: int) -> AnyArray:
         if self.is_text:
             return self.read("unsigned_char", count)
         n_bytes = -(-count // _BITS)

@@ -16,7 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..content.raw import Array, RawMesh, not_read
+from ...arrays import AnyArray
+from ..content.raw import RawMesh, not_read
 from ..content.tag_arrays import TAGS, read_tagged
 from ..parsing.cursor import Cursor
 from .cells import blocks_of, ends_of_rows
@@ -42,10 +43,10 @@ def read(path: Path) -> RawMesh:
 class _Grid:
     """What was read so far; `data` is by the name of the section."""
 
-    points: Array | None = None
-    rows: Array | None = None
-    ends: Array | None = None
-    types: Array | None = None
+    points: AnyArray | None = None
+    rows: AnyArray | None = None
+    ends: AnyArray | None = None
+    types: AnyArray | None = None
     data: dict[str, Arrays] = field(default_factory=dict)
 
     def length(self, section: str) -> int:

@@ -16,7 +16,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ..content.raw import Array
+from ...arrays import AnyArray
 from ..parsing.allowance import Allowance
 from ..parsing.cursor import Order
 from ..parsing.text_rows import parsed
@@ -73,7 +73,7 @@ class Encoding:
         return cls(_ORDERS[order], _TYPES[header], compressor, appended, raw, allowance)
 
 
-def numbers_of(element: Element, encoding: Encoding) -> Array:
+def numbers_of(element: Element, encoding: Encoding) -> AnyArray:
     """Return the numbers of a DataArray: (n,) or, of several components, (n, k)."""
     name = element.get("Name", "")
     kind = _TYPES.get(attribute(element, "type"))
@@ -105,14 +105,14 @@ def _text(element: Element) -> str:
     return "".join([element.text or "", *(child.tail or "" for child in element)])
 
 
-def _from_text(text: str, name: str, kind: str) -> Array:
+def _from_text(text: str, name: str, kind: str) -> AnyArray:
     try:
         return parsed(text, np.int64 if kind[0] in "iu" else np.dtype(kind)).astype(kind)
     except ValueError as error:
         raise ValueError(f"the array {name!r} {error}") from error
 
 
-def _from_bytes(payload: bytes, name: str, kind: str, encoding: Encoding) -> Array:
+def _from_bytes(payload: bytes, name: str, kind: str, encoding: Encoding) -> AnyArray:
     dtype = np.dtype(kind).newbyteorder(encoding.order)
     if len(payload) % dtype.itemsize:
         raise ValueError(f"the array {name!r} has {len(payload)} bytes, no numbers of type {kind}")

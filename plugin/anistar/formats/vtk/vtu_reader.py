@@ -9,7 +9,8 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ..content.raw import Array, Block, RawMesh, not_read
+from ...arrays import AnyArray
+from ..content.raw import Block, RawMesh, not_read
 from ..content.tag_arrays import NAMES, TAGS, decoded_names, read_tagged
 from ..parsing.xml_tree import attribute, count, only_child, root_of
 from .cells import blocks_of
@@ -97,7 +98,7 @@ def _piece(piece: Element, encoding: Encoding, skipped: list[str]) -> RawMesh:
 
 def _data(
     piece: Element, tag: str, length: int, encoding: Encoding, skipped: list[str]
-) -> dict[str, Array]:
+) -> dict[str, AnyArray]:
     if piece.find(tag) is None:
         return {}
     arrays = _arrays(only_child(piece, tag), encoding, skipped)
@@ -107,8 +108,8 @@ def _data(
     return arrays
 
 
-def _arrays(parent: Element, encoding: Encoding, skipped: list[str]) -> dict[str, Array]:
-    arrays: dict[str, Array] = {}
+def _arrays(parent: Element, encoding: Encoding, skipped: list[str]) -> dict[str, AnyArray]:
+    arrays: dict[str, AnyArray] = {}
     for element in parent:
         name = attribute(element, "Name")
         if name in arrays:
@@ -140,7 +141,7 @@ def _joined(pieces: list[RawMesh]) -> RawMesh:
     return RawMesh(points, blocks, point_data=data, warnings=warnings)
 
 
-def _partial(groups: list[dict[str, Array]]) -> set[str]:
+def _partial(groups: list[dict[str, AnyArray]]) -> set[str]:
     """Return the names of arrays that not all groups have."""
     n_groups = Counter(name for group in groups for name in group)
     return {name for name, n in n_groups.items() if n < len(groups)}

@@ -16,11 +16,12 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from ...arrays import AnyArray
 from ...atomic import replaced
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ..content.export import exported
-from ..content.raw import Array, RawMesh
+from ..content.raw import RawMesh
 from ..content.tag_arrays import NAMES, TAGS, refuse_reserved
 from .cells import types_and_rows
 
@@ -63,7 +64,7 @@ def _document(content: RawMesh) -> list[str]:
     ]
 
 
-def _array(name: str, values: Array, *, tuples: bool = False) -> str:
+def _array(name: str, values: AnyArray, *, tuples: bool = False) -> str:
     """Return one inline base64 array; `tuples` adds the count that field data needs."""
     components = values.shape[1] if values.ndim > 1 else 1
     little = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))

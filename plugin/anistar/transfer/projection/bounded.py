@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
+from ...arrays import Floats, Ints
 from ...meshes.mesh import Mesh
-from ...meshes.topology import Float, Int
 from ..values.measure import weighted_sums
 from .intersection import Supermesh
 from .l2_projection import Loaded, Projector
@@ -25,15 +25,15 @@ ROUND_OFF = 1e-12
 class Bounds:
     """Smallest and largest value that each target value may take, (rows, c) each."""
 
-    low: Float
-    high: Float
+    low: Floats
+    high: Floats
 
-    def clipped(self, values: Float) -> Float:
+    def clipped(self, values: Floats) -> Floats:
         """Return the values with none outside the bounds."""
         return np.clip(values, self.low, self.high)
 
 
-def local_bounds(overlap: Supermesh, columns: Float, on: str) -> Bounds:
+def local_bounds(overlap: Supermesh, columns: Floats, on: str) -> Bounds:
     """Return the extrema of the source over its cells that overlap the support of each value.
 
     The support is that of the basis function: the cells around a target point, or the one cell.
@@ -57,19 +57,19 @@ def local_bounds(overlap: Supermesh, columns: Float, on: str) -> Bounds:
     return Bounds(low, high)
 
 
-def _reduced(extremum: np.ufunc, values: Float, pairs: Int, starts: Int) -> Float:
+def _reduced(extremum: np.ufunc, values: Floats, pairs: Ints, starts: Ints) -> Floats:
     columns = [extremum.reduceat(column[pairs], starts) for column in values.T]
     return np.stack(columns, axis=1)
 
 
-def _around_points(extremum: np.ufunc, by_cell: Float, target: Mesh, start: float) -> Float:
+def _around_points(extremum: np.ufunc, by_cell: Floats, target: Mesh, start: float) -> Floats:
     result = np.full((target.n_points, by_cell.shape[1]), start)
     for corner in target.cells.T:
         extremum.at(result, corner, by_cell)
     return result
 
 
-def bounded(projector: Projector, field: Loaded) -> Float:
+def bounded(projector: Projector, field: Loaded) -> Floats:
     """Return the projection of a field, within the local bounds of the source.
 
     P0 values are means, which lie within their bounds. P1 values in each cell are drawn towards
@@ -115,7 +115,7 @@ def bounded(projector: Projector, field: Loaded) -> Float:
     return _refilled(projector, field, bounds.clipped(limited), bounds)
 
 
-def _towards_means(values: Float, bounds: Bounds, width: int) -> Float:
+def _towards_means(values: Floats, bounds: Bounds, width: int) -> Floats:
     """Shrink the values of each cell towards their mean until they are within the bounds."""
     by_cell = values.reshape(-1, width, values.shape[1])
     mean = by_cell.mean(axis=1, keepdims=True)
@@ -127,7 +127,7 @@ def _towards_means(values: Float, bounds: Bounds, width: int) -> Float:
     return np.asarray(mean + factor * away).reshape(values.shape)
 
 
-def _flux_corrected(projector: Projector, low: Float, high: Float, bounds: Bounds) -> Float:
+def _flux_corrected(projector: Projector, low: Floats, high: Floats, bounds: Bounds) -> Floats:
     """Return the low-order values plus the fluxes towards the high-order ones that fit."""
     slack = ROUND_OFF * (bounds.high - bounds.low)
     if np.all((high >= bounds.low - slack) & (high <= bounds.high + slack)):
@@ -150,8 +150,8 @@ def _flux_corrected(projector: Projector, low: Float, high: Float, bounds: Bound
 
 
 def _limited(
-    flux: Float, ends: tuple[Int, Int], values: Float, lumped: Float, bounds: Bounds
-) -> Float:
+    flux: Floats, ends: tuple[Ints, Ints], values: Floats, lumped: Floats, bounds: Bounds
+) -> Floats:
     """Return what fits of the fluxes from the second to the first end, by Zalesak's limiter."""
     i, j = ends
     n = len(values)
@@ -163,13 +163,13 @@ def _limited(
     return flux * np.where(flux > 0, np.minimum(up[i], down[j]), np.minimum(down[i], up[j]))
 
 
-def _part(room: Float, wanted: Float) -> Float:
+def _part(room: Floats, wanted: Floats) -> Floats:
     """Return room over wanted, at most 1, and 1 where nothing is wanted."""
     ratio = np.divide(room, wanted, out=np.ones_like(room), where=wanted != 0)
     return np.minimum(ratio, 1.0)
 
 
-def _refilled(projector: Projector, field: Loaded, values: Float, bounds: Bounds) -> Float:
+def _refilled(projector: Projector, field: Loaded, values: Floats, bounds: Bounds) -> Floats:
     """Spread what is missing of each integral over the room left by the bounds."""
     after = projector.functionals(field.on)[1]
     own = _own_entries(after)
@@ -182,7 +182,7 @@ def _refilled(projector: Projector, field: Loaded, values: Float, bounds: Bounds
     return _total_refilled(projector, field, values, bounds)
 
 
-def _total_refilled(projector: Projector, field: Loaded, values: Float, bounds: Bounds) -> Float:
+def _total_refilled(projector: Projector, field: Loaded, values: Floats, bounds: Bounds) -> Floats:
     """Spread what regions without inner values miss over all values, for the sake of the total."""
     moments = projector.lumped_mass(field.on)
     if projector.functionals(field.on)[1].shape[0] == 1:
@@ -202,7 +202,7 @@ def _own_entries(functionals: csr_array) -> csr_array:
     return csr_array(entries, shape=functionals.shape)
 
 
-def _part_of_room(defect: Float, room: Float) -> Float:
+def _part_of_room(defect: Floats, room: Floats) -> Floats:
     """Return the part of the room, of the defect's sign, that the defect takes."""
     fits = (defect * room > 0) & (room != 0)
     ratio = np.divide(defect, room, out=np.zeros_like(room), where=fits)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...arrays import Floats
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
-from ...meshes.topology import Float, cell_volumes
+from ...meshes.topology import cell_volumes
 from ..values.columns import as_columns
 from ..values.measure import weighted_sums
 from .intersection import Supermesh
@@ -34,7 +35,7 @@ def l2_difference(overlap: Supermesh, before: Loaded, after: Field) -> list[floa
     return [before.scale * float(value) for value in np.sqrt(np.maximum(square, 0.0))]
 
 
-def _squares(mesh: Mesh, columns: Float, on: str, covered: Float | None) -> Float:
+def _squares(mesh: Mesh, columns: Floats, on: str, covered: Floats | None) -> Floats:
     """Return the integrals of the squares, each cell scaled to its covered volume."""
     volumes = cell_volumes(mesh.points, mesh.cells) if covered is None else covered
     if on == "cells":

@@ -9,8 +9,9 @@ import numpy as np
 from scipy.sparse import bsr_array, csr_array
 
 from ... import _core
+from ...arrays import Bools, Floats
 from ...meshes.mesh import Mesh
-from ...meshes.topology import Bool, Float, cell_volumes
+from ...meshes.topology import cell_volumes
 from ..regions import Regions, common_regions, sums_by_region
 from ..report import Coverage
 
@@ -67,10 +68,10 @@ class Supermesh:
     points: csr_array | None
     cells: csr_array
     blocks: bsr_array | None
-    loads: Float
-    uncovered: Float
-    distance: Float
-    covered: Float
+    loads: Floats
+    uncovered: Floats
+    distance: Floats
+    covered: Floats
 
     def matrix(self, on: str) -> Sparse:
         """Return the matrix for values on points, cells or cell_nodes."""
@@ -78,7 +79,7 @@ class Supermesh:
         assert made is not None, f"the supermesh was made without the matrix for {on}"
         return made
 
-    def coincides(self) -> Bool:
+    def coincides(self) -> Bools:
         """Tell for each common region whether both meshes cover the same place."""
         count = self.regions.count
         target = cell_volumes(self.target.points, self.target.cells)
@@ -110,7 +111,7 @@ def supermesh(
     *,
     points: bool = True,
     blocks: bool = False,
-    nodal: Float | None = None,
+    nodal: Floats | None = None,
     threads: int = 1,
     callback: Progress | None = None,
 ) -> Supermesh:
@@ -168,6 +169,6 @@ def supermesh(
     )
 
 
-def _csr(rows: tuple[Float, Float, Float], shape: tuple[int, int]) -> csr_array:
+def _csr(rows: tuple[Floats, Floats, Floats], shape: tuple[int, int]) -> csr_array:
     starts, columns, values = rows
     return csr_array((values, columns, starts), shape=shape)

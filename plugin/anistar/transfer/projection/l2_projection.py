@@ -9,8 +9,9 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
+from ...arrays import Bools, Floats, Ints
 from ...meshes.mesh import Mesh
-from ...meshes.topology import Bool, Float, Int, cell_volumes
+from ...meshes.topology import cell_volumes
 from .intersection import Supermesh
 from .mass import Mass, mass
 from .symmetric_system import SymmetricSystem
@@ -38,8 +39,8 @@ class Loaded:
     """
 
     on: str
-    columns: Float
-    load: Float
+    columns: Floats
+    load: Floats
     scale: float = 1.0
 
 
@@ -71,21 +72,21 @@ class Projector:
         return mass(self.overlap.target)
 
     @cached_property
-    def volumes(self) -> Float:
+    def volumes(self) -> Floats:
         """Volumes of the target's cells."""
         target = self.overlap.target
         return cell_volumes(target.points, target.cells)
 
     @cached_property
-    def kept(self) -> Bool:
+    def kept(self) -> Bools:
         """Whether each region is covered alike by both meshes."""
         return self.overlap.coincides()
 
-    def loaded(self, columns: Float, on: str) -> Loaded:
+    def loaded(self, columns: Floats, on: str) -> Loaded:
         """Return (rows, c) values on the source with their load, by the mixed matrix."""
         return Loaded(on, columns, np.asarray(self.overlap.matrix(on) @ columns))
 
-    def solved(self, load: Float, on: str) -> Float:
+    def solved(self, load: Floats, on: str) -> Floats:
         """Return the inverse of the target's mass matrix, applied to the (rows, c) load."""
         if on == "points":
             return self.mass.solved(load)
@@ -108,7 +109,7 @@ class Projector:
             self._functionals[on] = before, after
         return self._functionals[on]
 
-    def integrals(self, field: Loaded) -> Float:
+    def integrals(self, field: Loaded) -> Floats:
         """Return the (r, c) integrals of the source that the target shall have."""
         before, after = self.functionals(field.on)
         kept = np.asarray(before @ field.columns)
@@ -129,14 +130,14 @@ class Projector:
             self._corrections[on] = vectors, SymmetricSystem(csr_array(after @ vectors), steps)
         return self._corrections[on]
 
-    def lumped_mass(self, on: str) -> Float:
+    def lumped_mass(self, on: str) -> Floats:
         """Return the integrals of the target's basis functions."""
         if on == "points":
             return self.mass.lumped
         width = 1 if on == "cells" else self.overlap.target.dim + 1
         return np.repeat(self.volumes / width, width)
 
-    def projected(self, field: Loaded) -> Float:
+    def projected(self, field: Loaded) -> Floats:
         """Return the (n_target, c) projection of a field."""
         values = self.solved(field.load, field.on)
         vectors, amounts = self.corrections(field.on)
@@ -151,10 +152,10 @@ class Projector:
         vectors, amounts = self.corrections(on)
         count = before.shape[0]
 
-        def direct(values: Float) -> Float:
+        def direct(values: Floats) -> Floats:
             return self.projected(self.loaded(values.reshape(-1, 1), on)).ravel()
 
-        def adjoint(values: Float) -> Float:
+        def adjoint(values: Floats) -> Floats:
             flat = values.reshape(-1, 1)
             multiplier = amounts.solved(vectors.T @ flat)
             rest = multiplier[count:].sum()
@@ -173,7 +174,7 @@ class Projector:
         return aslinearoperator(csr_array(scaling @ self.overlap.matrix(on)))
 
 
-def integrals_matrix(mesh: Mesh, groups: Int, count: int, on: str) -> csr_array:
+def integrals_matrix(mesh: Mesh, groups: Ints, count: int, on: str) -> csr_array:
     """Return the (count, n) functionals that integrate a field over the cells of each group.
 
     Cells whose group is `count` or more belong to none.
@@ -188,7 +189,7 @@ def integrals_matrix(mesh: Mesh, groups: Int, count: int, on: str) -> csr_array:
     return csr_array(coo_array(entries, shape=(count, size)))
 
 
-def _solved_in_cells(load: Float, volumes: Float, dim: int) -> Float:
+def _solved_in_cells(load: Floats, volumes: Floats, dim: int) -> Floats:
     """Apply the inverse of ``|K| (1 + delta_ij) / ((d + 1) (d + 2))`` in each cell."""
     width = dim + 1
     by_cell = load.reshape(len(volumes), width, -1)

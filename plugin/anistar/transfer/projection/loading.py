@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...arrays import Floats
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
-from ...meshes.topology import Float
 from ..options import TransferOptions
 from ..values.columns import as_columns, power_of_two
 from .intersection import Supermesh, supermesh
@@ -64,7 +64,7 @@ def overlapped(
     ends = np.cumsum([columns.shape[1] for columns in nodal.values()], dtype=int)
     loads = dict(zip(nodal, np.split(overlap.loads, ends, axis=1)[:-1], strict=True))
 
-    def loaded(name: str, columns: Float) -> Loaded:
+    def loaded(name: str, columns: Floats) -> Loaded:
         key, on = (name, id(columns)), linear[name].on
         load = loads[key] if on == "cell_nodes" else overlap.matrix(on) @ scaled[key]
         return Loaded(on, scaled[key], np.asarray(load), power_of_two(columns))

@@ -9,8 +9,9 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 
+from ...arrays import Floats, Ints
 from ...meshes.mesh import Mesh
-from ...meshes.topology import Float, Int, cell_volumes
+from ...meshes.topology import cell_volumes
 from .symmetric_system import SymmetricSystem
 
 # Scaled by its diagonal the mass matrix has a condition number of at most d + 2 on any mesh
@@ -33,9 +34,9 @@ class Mass:
         Sums of the rows.
     """
 
-    edges: Int
-    between: Float
-    lumped: Float
+    edges: Ints
+    between: Floats
+    lumped: Floats
 
     @cached_property
     def matrix(self) -> csr_array:
@@ -53,7 +54,7 @@ class Mass:
         """The system with that matrix."""
         return SymmetricSystem(self.matrix, MAX_STEPS)
 
-    def solved(self, load: Float) -> Float:
+    def solved(self, load: Floats) -> Floats:
         """Return the solution for the (n,) or (n, c) right-hand sides.
 
         Raises
@@ -80,7 +81,7 @@ def mass(mesh: Mesh) -> Mass:
     return Mass(np.stack(summed.coords).astype(np.int32), summed.data, hat_integrals(mesh))
 
 
-def hat_integrals(mesh: Mesh) -> Float:
+def hat_integrals(mesh: Mesh) -> Floats:
     """Return the (n,) integrals of the hat functions."""
     share = cell_volumes(mesh.points, mesh.cells) / (mesh.dim + 1)
     weights = np.repeat(share, mesh.dim + 1)

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ... import _core
+from ...arrays import Floats
 from ...errors import MeshingError
-from ...meshes.topology import Float
 
 RESIDUAL = 1e-15
 # What round-off may leave of the residual when the steps end.
@@ -34,7 +34,7 @@ class SymmetricSystem:
             matrix.indptr.astype(np.int64), matrix.indices.astype(np.int32), matrix.data
         )
 
-    def solved(self, right: Float, start: Float | None = None) -> Float:
+    def solved(self, right: Floats, start: Floats | None = None) -> Floats:
         """Return the solution for the (n,) or (n, c) right-hand sides.
 
         Parameters

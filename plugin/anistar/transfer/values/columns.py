@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...arrays import Floats
 from ...meshes.fields import Field
-from ...meshes.topology import Float
 from ...metric.kernels.algebra import eigenvalues, exp_metric, log_metric
 
 
-def as_columns(field: Field, *, logarithmic: bool) -> Float:
+def as_columns(field: Field, *, logarithmic: bool) -> Floats:
     """Return the components as (rows, c) columns; nodes of a cell count as rows of their own.
 
     With `logarithmic` the components of a tensor field are those of its logarithm, in which
@@ -36,13 +36,13 @@ def as_columns(field: Field, *, logarithmic: bool) -> Float:
     return np.ascontiguousarray(values.reshape(rows, -1), dtype=np.float64)
 
 
-def power_of_two(columns: Float) -> float:
+def power_of_two(columns: Floats) -> float:
     """Return a scale that keeps squares of the values in range and changes no digit of them."""
     # one less than the exponent of frexp, which is above that of the largest number
     return math.ldexp(1.0, math.frexp(float(np.abs(columns).max(initial=0.0)))[1] - 1)
 
 
-def from_columns(columns: Float, like: Field, *, logarithmic: bool) -> Field:
+def from_columns(columns: Floats, like: Field, *, logarithmic: bool) -> Field:
     """Return the field whose components are the columns, of the same form as another."""
     lead = (-1,) if like.on != "cell_nodes" else (-1, like.values.shape[1])
     tail = like.values.shape[len(lead) :]
@@ -52,7 +52,7 @@ def from_columns(columns: Float, like: Field, *, logarithmic: bool) -> Field:
     return replace(like, values=values)
 
 
-def _require_positive(values: Float) -> None:
+def _require_positive(values: Floats) -> None:
     dim = values.shape[-1]
     smallest = eigenvalues(values.reshape(-1, dim, dim)).min(axis=1).reshape(values.shape[:-2])
     if not (smallest > 0).all():
@@ -64,6 +64,6 @@ def _require_positive(values: Float) -> None:
         )
 
 
-def _by_rows(function, values: Float) -> Float:  # type: ignore[no-untyped-def]
+def _by_rows(function, values: Floats) -> Floats:  # type: ignore[no-untyped-def]
     dim = values.shape[-1]
     return np.asarray(function(values.reshape(-1, dim, dim))).reshape(values.shape)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...arrays import Floats
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
-from ...meshes.topology import Float, cell_volumes
+from ...meshes.topology import cell_volumes
 from .nodes import node_weights
 
 
-def cell_integrals(mesh: Mesh, field: Field) -> Float:
+def cell_integrals(mesh: Mesh, field: Field) -> Floats:
     """Return the (m, ...) integrals of a field over each cell."""
     volumes = cell_volumes(mesh.points, mesh.cells)
     if field.on == "cells":
@@ -23,12 +24,12 @@ def cell_integrals(mesh: Mesh, field: Field) -> Float:
     return np.asarray(volumes.reshape(-1, *[1] * (means.ndim - 1)) * means)
 
 
-def weighted_sums(weights: Float, columns: Float) -> Float:
+def weighted_sums(weights: Floats, columns: Floats) -> Floats:
     """Return the (c,) sums of (n, c) columns times (n,) weights, as accurate as one column's."""
     return np.asarray(np.multiply(columns.T, weights, order="C").sum(axis=1))
 
 
-def integral(mesh: Mesh, field: Field) -> Float:
+def integral(mesh: Mesh, field: Field) -> Floats:
     """Return the integral of a field over the mesh, one value for each component.
 
     Parameters

@@ -6,8 +6,8 @@ import itertools
 
 import numpy as np
 
+from ...arrays import Floats
 from ...meshes.mesh import Mesh
-from ...meshes.topology import Float
 
 
 def n_nodes(dim: int, order: int) -> int:
@@ -25,7 +25,7 @@ def edge_corners(dim: int) -> list[tuple[int, int]]:
     return list(itertools.combinations(range(dim + 1), 2))
 
 
-def node_coordinates(dim: int, count: int) -> Float:
+def node_coordinates(dim: int, count: int) -> Floats:
     """Return the (count, d + 1) barycentric coordinates of the nodes of a cell."""
     corners = np.eye(dim + 1)
     if node_order(dim, count) == 1:
@@ -34,7 +34,7 @@ def node_coordinates(dim: int, count: int) -> Float:
     return np.concatenate([corners, middles])
 
 
-def node_positions(mesh: Mesh, order: int = 1) -> Float:
+def node_positions(mesh: Mesh, order: int = 1) -> Floats:
     """Return where the nodes of each cell lie, in the order that `Field` takes values.
 
     Parameters
@@ -61,7 +61,7 @@ def node_positions(mesh: Mesh, order: int = 1) -> Float:
     return np.asarray(np.einsum("kj,mjd->mkd", coordinates, mesh.points[mesh.cells]))
 
 
-def node_basis(barycentric: Float, count: int) -> Float:
+def node_basis(barycentric: Floats, count: int) -> Floats:
     """Return the (q, count) values of the nodal basis at (q, d + 1) barycentric coordinates."""
     dim = barycentric.shape[1] - 1
     if node_order(dim, count) == 1:
@@ -71,7 +71,7 @@ def node_basis(barycentric: Float, count: int) -> Float:
     return np.asarray(np.concatenate([corners, np.stack(middles, axis=1)], axis=1))
 
 
-def node_weights(dim: int, count: int) -> Float:
+def node_weights(dim: int, count: int) -> Floats:
     """Return the means of the nodal basis over a cell."""
     if node_order(dim, count) == 1:
         return np.full(count, 1 / (dim + 1))
