@@ -17,8 +17,7 @@ import numpy as np
 import anistar
 from anistar.adapters.dolfinx import from_dolfinx, point_values, to_dolfinx, to_function
 from anistar.judging.interpolation_error import l2_error
-from anistar.pictures import solution_picture
-from anistar.pictures.volume import volume_picture
+from anistar.pictures import solution_picture, volume_picture
 
 # dolfinx and what comes with it can be imported once anistar's adapter has found its wheel.
 import dolfinx.fem  # isort: skip

@@ -17,8 +17,7 @@ import numpy as np
 import anistar
 from anistar.adapters.mfem import from_mfem, to_mfem
 from anistar.judging.interpolation_error import l2_error
-from anistar.pictures import mesh_picture
-from anistar.pictures.volume import volume_picture
+from anistar.pictures import mesh_picture, volume_picture
 
 EPSILON = 1e-4
 COMPLEXITIES = {2: (125, 250, 500, 1000), 3: (500, 1000, 2000)}

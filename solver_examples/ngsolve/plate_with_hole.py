@@ -19,8 +19,7 @@ from netgen.geom2d import SplineGeometry
 
 import anistar
 from anistar.adapters.ngsolve import from_ngsolve, to_ngsolve
-from anistar.pictures import mesh_picture
-from anistar.pictures.volume import volume_picture
+from anistar.pictures import mesh_picture, volume_picture
 
 RADIUS = 0.05
 THICKNESS = 0.5

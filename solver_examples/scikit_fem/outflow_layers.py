@@ -26,7 +26,7 @@ from skfem.helpers import dot, grad
 import anistar
 from anistar.adapters.skfem import from_skfem, to_skfem
 from anistar.judging.interpolation_error import l2_error
-from anistar.pictures.volume import volume_picture
+from anistar.pictures import volume_picture
 
 EPSILON = 0.01
 COMPLEXITIES = (500, 1000, 2000, 4000)

@@ -8,7 +8,7 @@ from anistar import validate
 from anistar.demo.volume import unit_cube
 
 pytest.importorskip("matplotlib")
-from anistar.pictures.volume import volume_picture
+from anistar.pictures import volume_picture
 
 MESH = unit_cube(3)
 

@@ -6,7 +6,7 @@ import sys
 from cpu_levels import described
 from result_digests import curved_results, digest, digests
 
-from anistar.quality import mean_ratios
+from anistar.judging.quality import mean_ratios
 
 
 def qualities(dim):
