@@ -13,9 +13,9 @@ import pytest
 from meshes import square, two_regions
 from shapes import angles, arc_metric, fan, on_circle, on_clover, rotating_metric, uniform
 
+from anistar import RemeshOptions, remesh
 from anistar.errors import MeshingError
 from anistar.meshes.validation import validate
-from anistar.remeshing.remesh import RemeshOptions, remesh
 
 PHASES = ["curves", "size", "shape", "agreement", "certificate", "report"]
 
@@ -179,7 +179,7 @@ def test_an_exception_in_the_callback_comes_through_from_every_phase(where):
 LONG_RUN = """
 from meshes import square
 from shapes import rotating_metric
-from anistar.remesh import remesh
+from anistar import remesh
 mesh = square(20)
 M = rotating_metric(mesh, 3e6)
 print("started", flush=True)
@@ -190,7 +190,7 @@ LONG_CURVES = """
 import math
 import numpy as np
 from meshes import square
-from anistar.remesh import RemeshOptions, remesh
+from anistar import RemeshOptions, remesh
 mesh = square(20)
 M = np.tile(np.diag([1e13, 1.0]), (mesh.n_points, 1, 1))
 print("started", flush=True)
@@ -201,7 +201,7 @@ LONG_PROJECTION = """
 import time
 from meshes import square
 from shapes import uniform
-from anistar.remesh import remesh
+from anistar import remesh
 mesh = square(20)
 def project(points, tag):
     time.sleep(1)
