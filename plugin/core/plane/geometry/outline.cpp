@@ -176,7 +176,7 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
       changed = true;
     } else {
       const double segment = std::floor(edge.t0);
-      curve.straighten(segment);
+      curve.straighten(static_cast<std::size_t>(segment));
       for (const CurveEdge &other : outline.edges)
         if (other.curve == edge.curve)
           for (const auto &[v, t] :

@@ -5,21 +5,12 @@
 namespace anistar {
 namespace {
 
-/// The vertices of a cell but those at positions i and j, in increasing order.
-template <std::size_t d>
-std::array<Index, d - 1> ridge_of(const Cell<d> &cell, std::size_t i, std::size_t j) {
-  std::array<Index, d - 1> ridge{};
-  std::size_t n = 0;
-  for (std::size_t k = 0; k <= d; ++k)
-    if (k != i && k != j)
-      ridge[n++] = cell[k];
-  std::sort(ridge.begin(), ridge.end());
-  return ridge;
-}
+/// The corner of a triangle that is neither i nor j.
+constexpr std::size_t third(std::size_t i, std::size_t j) { return 3 - i - j; }
 
 } // namespace
 
-template <std::size_t d> void Cavity<d>::clear() {
+void Cavity::clear() {
   if (++epoch_ == 0) { // the counter wrapped: old stamps could look new
     std::fill(stamp_.begin(), stamp_.end(), 0);
     epoch_ = 1;
@@ -27,7 +18,7 @@ template <std::size_t d> void Cavity<d>::clear() {
   cells_.clear();
 }
 
-template <std::size_t d> void Cavity<d>::add(Index cell) {
+void Cavity::add(Index cell) {
   if (std::cmp_greater_equal(cell, stamp_.size()))
     stamp_.resize(mesh_.cells.size(), 0);
   if (stamp_[cell] == epoch_)
@@ -36,14 +27,13 @@ template <std::size_t d> void Cavity<d>::add(Index cell) {
   cells_.push_back(cell);
 }
 
-template <std::size_t d>
-void Cavity<d>::bound(Index apex, std::span<const HalfFacet> skipped) {
+void Cavity::bound(Index apex, std::span<const HalfFacet> skipped) {
   facets_.clear();
   at_apex_.clear();
   for (Index c : cells_) {
     const std::size_t a = mesh_.local_index(c, apex);
     const bool has_apex = mesh_.at(c)[a] == apex;
-    for (std::size_t i = 0; i <= d; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       const HalfFacet h(c, i), beyond = mesh_.opposite(h);
       if (beyond.exists() && contains(beyond.cell()))
         continue;
@@ -55,21 +45,33 @@ void Cavity<d>::bound(Index apex, std::span<const HalfFacet> skipped) {
   }
 }
 
-template <std::size_t d> bool Cavity<d>::is_star_shaped(const Vector<d> &x) const {
+bool Cavity::is_star_shaped(const Vector<2> &x) const {
   for (HalfFacet h : facets_) {
-    Simplex<d> s = mesh_.simplex(h.cell());
+    Simplex<2> s = mesh_.simplex(h.cell());
     s[h.facet()] = x;
-    if (!has_volume<d>(s))
+    if (!has_volume<2>(s))
       return false;
   }
   return true;
 }
 
-/// Joins a facet at the apex with its other side if that has come already. A cavity has
-/// a dozen facets in 2D and some tens in 3D: a linear search is the fastest there.
-template <std::size_t d> void Cavity<d>::connect(const Port &port) {
+bool Cavity::keeps_vertices() const {
+  const auto is_kept = [&](Index v) {
+    return std::any_of(facets_.begin(), facets_.end(), [&](HalfFacet h) {
+      const auto [a, b] = mesh_.facet(h);
+      return a == v || b == v;
+    });
+  };
+  return std::all_of(cells_.begin(), cells_.end(), [&](Index c) {
+    return std::all_of(mesh_.at(c).begin(), mesh_.at(c).end(), is_kept);
+  });
+}
+
+/// Joins an edge at the apex with its other side if that has come already. A cavity has
+/// a dozen facets: a linear search is the fastest there.
+void Cavity::connect(const Port &port) {
   for (Port &other : ports_)
-    if (other.ridge == port.ridge) {
+    if (other.end == port.end) {
       mesh_.join(port.half, other.half);
       const Index constraint =
           port.constraint != none ? port.constraint : other.constraint;
@@ -82,8 +84,7 @@ template <std::size_t d> void Cavity<d>::connect(const Port &port) {
   ports_.push_back(port);
 }
 
-template <std::size_t d>
-void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
+void Cavity::fill(Index apex, std::span<const SpokeConstraint> spokes) {
   const auto outer_of = [&](HalfFacet h) {
     return Outer{mesh_.at(h.cell()), h.facet(), mesh_.opposite(h), mesh_.constraint(h),
                  mesh_.region[h.cell()]};
@@ -116,23 +117,24 @@ void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
       mesh_.vertex_cell[v] = c;
   }
   for (HalfFacet base : star_)
-    for (std::size_t j = 0; j <= d; ++j)
+    for (std::size_t j = 0; j < 3; ++j)
       if (j != base.facet()) {
-        const auto ridge = ridge_of<d>(mesh_.at(base.cell()), base.facet(), j);
+        const HalfFacet spoke(base.cell(), j);
+        const Index end = mesh_.at(base.cell())[third(base.facet(), j)];
         Index constraint = none;
-        for (const RidgeConstraint<d> &given : ridges)
-          if (given.ridge == ridge)
+        for (const SpokeConstraint &given : spokes)
+          if (given.end == end)
             constraint = given.constraint;
-        mesh_.set_constraint(HalfFacet(base.cell(), j), constraint);
-        connect({ridge, HalfFacet(base.cell(), j), constraint});
+        mesh_.set_constraint(spoke, constraint);
+        connect({end, spoke, constraint});
       }
   for (const Outer &wall : walls_) {
     std::size_t a = 0;
     while (wall.cell[a] != apex)
       ++a;
-    const auto ridge = ridge_of<d>(wall.cell, a, wall.facet);
+    const Index end = wall.cell[third(a, wall.facet)];
     for (const Port &port : ports_)
-      if (port.ridge == ridge) {
+      if (port.end == end) {
         const Index constraint =
             wall.constraint != none ? wall.constraint : port.constraint;
         mesh_.join(port.half, wall.beyond);
@@ -143,8 +145,5 @@ void Cavity<d>::fill(Index apex, std::span<const RidgeConstraint<d>> ridges) {
       }
   }
 }
-
-template class Cavity<2>;
-template class Cavity<3>;
 
 } // namespace anistar

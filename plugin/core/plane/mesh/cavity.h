@@ -11,18 +11,16 @@
 
 namespace anistar {
 
-/// A constraint for the facet spanned by the apex and `ridge`, the other d - 1 vertices
-/// in increasing order.
-template <std::size_t d> struct RidgeConstraint {
-  std::array<Index, d - 1> ridge;
-  Index constraint;
+/// A constraint for the edge from the apex to another vertex.
+struct SpokeConstraint {
+  Index end, constraint;
 };
 
 /// Collects a cavity, tests it and fills it. One object serves a whole sweep: its
 /// storage is reused.
-template <std::size_t d> class Cavity {
+class Cavity {
 public:
-  explicit Cavity(Triangulation<d> &mesh) : mesh_(mesh) {}
+  explicit Cavity(Triangulation<2> &mesh) : mesh_(mesh) {}
 
   /// From now on new cells, and what insert_in_cell adds, go to these places.
   void take_from(Slots *slots) { slots_ = slots; }
@@ -35,42 +33,43 @@ public:
   }
   [[nodiscard]] std::span<const Index> cells() const { return cells_; }
 
-  /// Finds the facets over which the star of `apex` will be built: those of the
-  /// cavity's boundary that do not contain it. `skipped` facets lie on the boundary of
-  /// the domain and end there: the apex is on them, or they vanish.
+  /// Finds the edges over which the star of `apex` will be built: those of the cavity's
+  /// boundary that do not contain it. `skipped` edges lie on the boundary of the domain
+  /// and end there: the apex is on them, or they vanish.
   void bound(Index apex, std::span<const HalfFacet> skipped = {});
   [[nodiscard]] std::span<const HalfFacet> facets() const { return facets_; }
 
   /// Whether x sees every one of facets() from inside, and not along it: the test that
   /// keeps the mesh valid.
-  [[nodiscard]] bool is_star_shaped(const Vector<d> &x) const;
+  [[nodiscard]] bool is_star_shaped(const Vector<2> &x) const;
+  /// Whether every vertex of the cavity is on one of facets(): none would vanish.
+  [[nodiscard]] bool keeps_vertices() const;
 
   /// Replaces the cavity by the star of the apex. The new cells keep the region of the
-  /// cavity cell behind their facet, outer facets keep their constraints, and `ridges`
-  /// gives those of facets at the apex.
+  /// cavity cell behind their facet, outer facets keep their constraints, and `spokes`
+  /// gives those of edges at the apex.
   /// @pre bound(apex, ...) was called and is_star_shaped holds; vertices that vanish
   /// lie inside the cavity and are marked unused by the caller.
-  void fill(Index apex, std::span<const RidgeConstraint<d>> ridges = {});
+  void fill(Index apex, std::span<const SpokeConstraint> spokes = {});
 
   /// The cells that the last fill() made, each as the half-facet opposite the apex.
   [[nodiscard]] std::span<const HalfFacet> star() const { return star_; }
 
 private:
-  using Ridge = std::array<Index, d - 1>;
-  struct Port { ///< a facet at the apex that waits for its other side
-    Ridge ridge;
+  struct Port { ///< an edge at the apex that waits for its other side
+    Index end;  ///< the other end of the edge
     HalfFacet half;
     Index constraint;
   };
 
   struct Outer { ///< a facet of the cavity's boundary, kept while its cell is replaced
-    Cell<d> cell;
+    Cell<2> cell;
     std::size_t facet;
     HalfFacet beyond;
     Index constraint, region;
   };
 
-  Triangulation<d> &mesh_;
+  Triangulation<2> &mesh_;
   Slots *slots_ = nullptr;
   std::vector<std::uint32_t> stamp_;
   std::uint32_t epoch_ = 0;

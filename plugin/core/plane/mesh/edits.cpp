@@ -9,21 +9,8 @@ constexpr double on_edge = 1e-6;
 /// A cavity may grow by this many cells to see a point of a curve.
 constexpr int max_growth = 8;
 
-/// Whether every vertex of the cavity is on a facet that the new star will have.
-bool keeps_vertices(const Triangulation<2> &mesh, const Cavity<2> &cavity) {
-  return std::all_of(cavity.cells().begin(), cavity.cells().end(), [&](Index c) {
-    return std::all_of(mesh.at(c).begin(), mesh.at(c).end(), [&](Index v) {
-      return std::any_of(cavity.facets().begin(), cavity.facets().end(),
-                         [&](HalfFacet h) {
-                           const auto [a, b] = mesh.facet(h);
-                           return a == v || b == v;
-                         });
-    });
-  });
-}
-
 /// Adds the cells behind facets that x does not see, but never across a constraint.
-bool grow_to_see(Triangulation<2> &mesh, Cavity<2> &cavity, Index apex,
+bool grow_to_see(Triangulation<2> &mesh, Cavity &cavity, Index apex,
                  std::span<const HalfFacet> skipped, const Vector<2> &x) {
   for (int growth = 0; growth <= max_growth; ++growth) {
     cavity.bound(apex, skipped);
@@ -37,7 +24,7 @@ bool grow_to_see(Triangulation<2> &mesh, Cavity<2> &cavity, Index apex,
       }
     }
     if (!hidden.exists())
-      return growth == 0 || keeps_vertices(mesh, cavity);
+      return growth == 0 || cavity.keeps_vertices();
     if (mesh.constraint(hidden) != none)
       return false;
     cavity.add(mesh.opposite(hidden).cell());
@@ -65,7 +52,7 @@ OnCurve curve_edges_at(const Workspace &w, Index v,
 
 } // namespace
 
-Index insert_in_cell(Triangulation<2> &mesh, Cavity<2> &cavity, Index cell,
+Index insert_in_cell(Triangulation<2> &mesh, Cavity &cavity, Index cell,
                      const Vertex<2> &vertex, Index background_cell) {
   const Simplex<2> s = mesh.simplex(cell);
   const double area = cross(s[1] - s[0], s[2] - s[0]);
@@ -133,8 +120,8 @@ Index split_edge(Workspace &w, HalfFacet edge) {
   w.walls.add(first, record);
   w.walls.add(first + 1, record);
   w.walls.remove(record);
-  const RidgeConstraint<2> ridges[2] = {{{whole.v0}, first}, {{whole.v1}, first + 1}};
-  w.cavity.fill(v, ridges);
+  const SpokeConstraint spokes[2] = {{whole.v0, first}, {whole.v1, first + 1}};
+  w.cavity.fill(v, spokes);
   return v;
 }
 
@@ -145,7 +132,7 @@ bool bound_collapse(Workspace &w, Collapse &collapse) {
   if (dimension == Triangulation<2>::corner)
     return false;
   collapse.skipped.clear();
-  collapse.ridges.clear();
+  collapse.spokes.clear();
   star_of(mesh, v, collapse.star);
   if (dimension == 1) {
     const OnCurve at = curve_edges_at(w, v, collapse.star);
@@ -170,7 +157,7 @@ bool bound_collapse(Workspace &w, Collapse &collapse) {
       if (mesh.constraint(h) != none && std::minmax(a, b) == std::minmax(in.v0, out.v1))
         return false; // another curve runs there
     }
-    collapse.ridges.push_back({{far}, none});
+    collapse.spokes.push_back({far, none});
     for (HalfFacet edge : {at.into, at.out_of})
       if (!mesh.opposite(edge).exists())
         collapse.skipped.push_back(edge);
@@ -184,15 +171,15 @@ bool bound_collapse(Workspace &w, Collapse &collapse) {
 }
 
 void fill_collapse(Workspace &w, Collapse &collapse) {
-  if (!collapse.ridges.empty()) {
-    collapse.ridges.front().constraint =
+  if (!collapse.spokes.empty()) {
+    collapse.spokes.front().constraint =
         static_cast<Index>(w.on_curves.curve_edges.size());
     w.on_curves.curve_edges.push_back(collapse.merged);
-    w.walls.add(collapse.ridges.front().constraint, collapse.halves[0]);
+    w.walls.add(collapse.spokes.front().constraint, collapse.halves[0]);
     for (Index gone : collapse.halves)
       w.walls.remove(gone);
   }
-  w.cavity.fill(collapse.target, collapse.ridges);
+  w.cavity.fill(collapse.target, collapse.spokes);
   w.mesh.vertex_cell[collapse.vertex] = none;
 }
 

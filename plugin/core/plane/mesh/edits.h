@@ -7,9 +7,8 @@ namespace anistar {
 
 /// Inserts an interior vertex into the cell that contains it. @returns the vertex, none
 /// when it lies too near to an edge. The new cells are cavity.star().
-[[nodiscard]] Index insert_in_cell(Triangulation<2> &mesh, Cavity<2> &cavity,
-                                   Index cell, const Vertex<2> &vertex,
-                                   Index background_cell);
+[[nodiscard]] Index insert_in_cell(Triangulation<2> &mesh, Cavity &cavity, Index cell,
+                                   const Vertex<2> &vertex, Index background_cell);
 
 /// Splits an edge in its middle: on the curve if it is constrained. @returns the new
 /// vertex, none when the edge is frozen or protected, or the curve cannot be followed
@@ -19,11 +18,11 @@ namespace anistar {
 /// The removal of a vertex into its neighbour, and what that means for its curve.
 struct Collapse {
   Index vertex, target;
-  std::vector<HalfFacet> star;            ///< scratch
-  std::vector<HalfFacet> skipped;         ///< boundary edges that vanish
-  std::vector<RidgeConstraint<2>> ridges; ///< the merged curve edge
-  CurveEdge merged{};                     ///< valid when ridges is not empty
-  std::array<Index, 2> halves{};          ///< the curve edges that merge
+  std::vector<HalfFacet> star;         ///< scratch
+  std::vector<HalfFacet> skipped;      ///< boundary edges that vanish
+  std::vector<SpokeConstraint> spokes; ///< the merged curve edge
+  CurveEdge merged{};                  ///< valid when spokes is not empty
+  std::array<Index, 2> halves{};       ///< the curve edges that merge
 };
 
 /// Bounds w.cavity for collapse.vertex and collapse.target, and fills in the rest.

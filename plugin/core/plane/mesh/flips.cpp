@@ -2,7 +2,7 @@
 
 namespace anistar {
 
-bool bound_swap(const Triangulation<2> &mesh, HalfFacet edge, Cavity<2> &cavity) {
+bool bound_swap(const Triangulation<2> &mesh, HalfFacet edge, Cavity &cavity) {
   const HalfFacet other = mesh.opposite(edge);
   if (!other.exists() || mesh.constraint(edge) != none)
     return false;

@@ -43,7 +43,7 @@ public:
 private:
   Triangulation<2> &mesh_;
   VertexRange range_;
-  Cavity<2> cavity_;
+  Cavity cavity_;
   std::vector<HalfFacet> stack_, star_;
   std::size_t n_flips_ = 0, n_capped_ = 0;
 
@@ -54,6 +54,6 @@ private:
 /// @returns false when they do not form a strictly convex quadrilateral, or the edge is
 /// constrained.
 [[nodiscard]] bool bound_swap(const Triangulation<2> &mesh, HalfFacet edge,
-                              Cavity<2> &cavity);
+                              Cavity &cavity);
 
 } // namespace anistar

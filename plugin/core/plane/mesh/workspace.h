@@ -15,7 +15,7 @@ struct Workspace {
   double hausdorff; ///< bound for the distance of an edge from its curve, relative
   Triangulation<2> &mesh = on_curves.mesh;
   /// Of the calling thread; in a parallel loop each thread has its own.
-  Cavity<2> cavity{mesh};
+  Cavity cavity{mesh};
   Legaliser legaliser{mesh};
   Walls walls{mesh, on_curves.curve_edges, geometry};
 

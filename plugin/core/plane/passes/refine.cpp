@@ -86,7 +86,7 @@ private:
 
   Workspace &w_;
   Legaliser &legaliser_;
-  Cavity<2> cavity_;
+  Cavity cavity_;
   VertexRange range_;
   double target_ = largest_radius;
   RefineCounts counts_;

@@ -23,7 +23,7 @@ HalfFacet Insertion::encroached(const Vertex<2> &p, Index cell) const {
 }
 
 bool Insertion::gather(const Vertex<2> &p, Index cell) {
-  Cavity<2> &cavity = w_.cavity;
+  Cavity &cavity = w_.cavity;
   cavity.clear();
   cavity.add(cell);
   for (std::size_t k = 0; k < cavity.cells().size(); ++k)
@@ -35,20 +35,13 @@ bool Insertion::gather(const Vertex<2> &p, Index cell) {
         cavity.add(beyond.cell());
     }
   cavity.bound(none);
-  const auto is_kept = [&](Index v) {
-    return std::any_of(cavity.facets().begin(), cavity.facets().end(),
-                       [&](HalfFacet h) {
-                         const auto [a, b] = mesh_.facet(h);
-                         return a == v || b == v;
-                       });
+  const auto is_near = [&](Index v) {
+    return quadratic<2>(p.M, mesh_.vertex(v).x - p.x) < separation * separation;
   };
   for (Index c : cavity.cells())
-    for (Index v : mesh_.at(c)) {
-      const Vector<2> r = mesh_.vertex(v).x - p.x;
-      if (!is_kept(v) || quadratic<2>(p.M, r) < separation * separation)
-        return false;
-    }
-  return cavity.is_star_shaped(p.x);
+    if (std::any_of(mesh_.at(c).begin(), mesh_.at(c).end(), is_near))
+      return false;
+  return cavity.keeps_vertices() && cavity.is_star_shaped(p.x);
 }
 
 Hits Insertion::score(const Vertex<2> &p, double radius) {
