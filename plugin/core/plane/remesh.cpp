@@ -5,7 +5,7 @@
 #include "plane/mesh/start.h"
 #include "plane/passes/bisection.h"
 #include "plane/passes/refine.h"
-#include "plane/passes/shape.h"
+#include "plane/passes/smooth.h"
 #include "plane/stars/agreement.h"
 #include "plane/stars/consistency.h"
 #include "plane/stars/star_mending.h"

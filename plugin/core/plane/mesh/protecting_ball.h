@@ -1,8 +1,8 @@
 #pragma once
 // The protecting ball of a sharp corner, in the mesh.
 
-#include "plane/mesh/moves.h"
-#include "plane/mesh/relocation.h"
+#include "plane/mesh/sliding_vertex.h"
+#include "plane/mesh/vertex_trial.h"
 
 #include <optional>
 

@@ -1,6 +1,6 @@
 #include "base/parallel.h"
 #include "plane/mesh/edits.h"
-#include "plane/passes/shape.h"
+#include "plane/passes/smooth.h"
 
 namespace anistar {
 namespace {

@@ -1,5 +1,5 @@
 #include "plane/mesh/edits.h"
-#include "plane/passes/shape.h"
+#include "plane/passes/smooth.h"
 
 #include <array>
 

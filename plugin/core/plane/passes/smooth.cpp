@@ -1,6 +1,6 @@
+#include "plane/passes/smooth.h"
 #include "mesh/blocks.h"
-#include "plane/mesh/moves.h"
-#include "plane/passes/shape.h"
+#include "plane/mesh/sliding_vertex.h"
 
 #include <cmath>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "plane/stars/insertion.h"
 
-#include "plane/mesh/relocation.h"
+#include "plane/mesh/vertex_trial.h"
 
 namespace anistar {
 namespace {

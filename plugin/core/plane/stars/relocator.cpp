@@ -1,6 +1,6 @@
 #include "plane/stars/relocator.h"
 
-#include "plane/mesh/moves.h"
+#include "plane/mesh/sliding_vertex.h"
 
 namespace anistar {
 namespace {

@@ -4,7 +4,7 @@
 #include "base/run.h"
 #include "plane/mesh/flips.h"
 #include "plane/mesh/protecting_ball.h"
-#include "plane/mesh/relocation.h"
+#include "plane/mesh/vertex_trial.h"
 #include "stars/agreement.h"
 
 #include <optional>

@@ -1,7 +1,7 @@
 #include "plane/stars/star_mending.h"
 
-#include "plane/mesh/moves.h"
-#include "plane/mesh/relocation.h"
+#include "plane/mesh/sliding_vertex.h"
+#include "plane/mesh/vertex_trial.h"
 #include "stars/star_mending.h"
 
 namespace anistar {

@@ -1,4 +1,4 @@
-#include "plane/mesh/moves.h"
+#include "plane/mesh/sliding_vertex.h"
 
 #include <cmath>
 

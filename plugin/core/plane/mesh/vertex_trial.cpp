@@ -1,4 +1,4 @@
-#include "plane/mesh/relocation.h"
+#include "plane/mesh/vertex_trial.h"
 
 namespace anistar {
 namespace {
