@@ -22,9 +22,9 @@ ProtectingBall::ProtectingBall(Workspace &w) : w_(w) {
 }
 
 bool ProtectingBall::gather(Index v) {
-  Relocation relocation(w_);
-  relocation.gather(v);
-  const SlidingVertex on(w_, relocation.star(), v);
+  PlaneTrial trial(w_);
+  trial.gather(v);
+  const SlidingVertex on(w_, trial.star(), v);
   if (!on.is_on_curve() || (on.in().ball == none && on.out().ball == none))
     return false;
   const Index ball = on.in().ball != none ? on.in().ball : on.out().ball;
@@ -38,11 +38,11 @@ bool ProtectingBall::gather(Index v) {
     if (stays(edge.v0) && stays(edge.v1))
       return false;
     shell_.push_back(stays(edge.v0) ? edge.v1 : edge.v0);
-    relocation.gather(shell_.back());
-    const SlidingVertex other(w_, relocation.star(), shell_.back());
+    trial.gather(shell_.back());
+    const SlidingVertex other(w_, trial.star(), shell_.back());
     if (!other.is_on_curve())
       return false;
-    legs_.push_back({relocation, other, relocation.here(), relocation.score()});
+    legs_.push_back({trial, other, trial.score()});
   }
   gather_edges();
   disagreeing_before_ = count_disagreeing();
@@ -53,7 +53,7 @@ bool ProtectingBall::gather(Index v) {
 void ProtectingBall::gather_edges() {
   edges_.clear();
   for (const Leg &leg : legs_)
-    leg.relocation.for_each_edge([&](HalfFacet edge) {
+    leg.trial.for_each_edge([&](HalfFacet edge) {
       const HalfFacet other = w_.mesh.opposite(edge);
       const HalfFacet first =
           other.exists() && other.cell() < edge.cell() ? other : edge;
@@ -94,20 +94,19 @@ bool ProtectingBall::resize(double factor) {
   for (std::size_t k = 0; k < legs_.size(); ++k) {
     Leg &leg = legs_[k];
     const std::optional<double> dt = step_to(leg, factor);
-    if (!dt || !leg.on.may_slide(*dt) ||
-        !may_move(w_.mesh, leg.from.vertex.x, leg.on.at(*dt), leg.relocation.star())) {
+    if (!dt || !leg.on.may_slide(*dt) || !leg.trial.may_move_to(leg.on.at(*dt))) {
       put_back(k);
       return false;
     }
     leg.dt = *dt;
-    leg.relocation.put(leg.relocation.at(leg.on.at(*dt)));
+    leg.trial.put(leg.trial.at(leg.on.at(*dt)));
   }
   return true;
 }
 
 bool ProtectingBall::drops(int least) const {
   for (const Leg &leg : legs_)
-    if (!leg.relocation.score().keeps(leg.before, part_kept_on_curve))
+    if (!leg.trial.score().keeps(leg.before, part_kept_on_curve))
       return false;
   return count_disagreeing() <= disagreeing_before_ - least;
 }
@@ -116,7 +115,7 @@ bool ProtectingBall::raises_quality() const {
   double before = 1, after = 1;
   for (const Leg &leg : legs_) {
     before = std::min(before, leg.before.quality);
-    after = std::min(after, leg.relocation.score().quality);
+    after = std::min(after, leg.trial.score().quality);
   }
   return after > before;
 }
@@ -125,7 +124,7 @@ void ProtectingBall::undo() { put_back(legs_.size()); }
 
 void ProtectingBall::put_back(std::size_t n_legs) {
   for (std::size_t k = 0; k < n_legs; ++k)
-    legs_[k].relocation.put(legs_[k].from);
+    legs_[k].trial.put_back();
 }
 
 void ProtectingBall::commit() const {

@@ -32,9 +32,8 @@ public:
 
 private:
   struct Leg {
-    Relocation relocation;
+    PlaneTrial trial;
     SlidingVertex on;
-    Place from;
     StarScore before;
     double dt = 0;
   };

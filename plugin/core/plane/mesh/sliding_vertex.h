@@ -1,25 +1,9 @@
 #pragma once
-// Where a vertex may go: targets of smoothing, validity of a move, sliding on a curve.
+// A vertex that slides along its curve.
 
 #include "plane/mesh/workspace.h"
 
 namespace anistar {
-
-/// The step of Bossen and Heckbert's pliant forces towards unit edges.
-[[nodiscard]] Vector<2> pliant_displacement(const Triangulation<2> &mesh,
-                                            const Vertex<2> &v,
-                                            std::span<const HalfFacet> star);
-
-/// The step towards the optimal Delaunay triangulation: the mean of the circumcentres
-/// of the star, weighted by area.
-[[nodiscard]] Vector<2> odt_displacement(const Triangulation<2> &mesh,
-                                         const Vertex<2> &v,
-                                         std::span<const HalfFacet> star);
-
-/// Whether v may go to x: every cell of its star stays positive, exactly, and keeps
-/// some of its area.
-[[nodiscard]] bool may_move(const Triangulation<2> &mesh, const Vector<2> &from,
-                            const Vector<2> &x, std::span<const HalfFacet> star);
 
 /// A vertex on a curve, between its two edges of the curve.
 class SlidingVertex {

@@ -13,6 +13,9 @@ const double unit_excess = elementary::log(longest_unit) - .03;
 /// Lengths up to here, and from its inverse on, are: most are, and need no logarithm.
 constexpr double surely_free = 1.37;
 
+/// A move may shrink a cell of the star to this fraction of its area.
+constexpr double smallest_area = .05;
+
 double excess(double length) {
   if (length < surely_free && length * surely_free > 1)
     return 0;
@@ -28,13 +31,30 @@ bool StarScore::keeps(const StarScore &before, double part) const {
          longest_at_end <= std::max(longest_kept_at_end, before.longest_at_end);
 }
 
-int Relocation::count_disagreeing() const {
+bool PlaneTrial::is_valid_at(const Vector<2> &x) const {
+  return std::all_of(star_.begin(), star_.end(), [&](HalfFacet h) {
+    const auto [a, b] = mesh_.facet(h);
+    return has_volume<2>({x, mesh_.vertex(a).x, mesh_.vertex(b).x});
+  });
+}
+
+bool PlaneTrial::may_move_to(const Vector<2> &x) const {
+  const Vector<2> &from = from_.vertex.x;
+  return std::all_of(star_.begin(), star_.end(), [&](HalfFacet h) {
+    const auto [ia, ib] = mesh_.facet(h);
+    const Vector<2> &a = mesh_.vertex(ia).x, &b = mesh_.vertex(ib).x;
+    return !(cross(a - x, b - x) <= smallest_area * cross(a - from, b - from)) &&
+           has_volume<2>({x, a, b});
+  });
+}
+
+int PlaneTrial::count_disagreeing() const {
   int n = 0;
   for_each_edge([&](HalfFacet e) { n += disagrees(mesh_, e); });
   return n;
 }
 
-bool Relocation::has_excess() const {
+bool PlaneTrial::has_excess() const {
   const Vertex<2> &v = mesh_.vertex(v_);
   return std::any_of(star_.begin(), star_.end(), [&](HalfFacet h) {
     const double l = edge_length(v, mesh_.vertex(mesh_.facet(h)[0]));
@@ -42,7 +62,7 @@ bool Relocation::has_excess() const {
   });
 }
 
-StarScore Relocation::score() const {
+StarScore PlaneTrial::score() const {
   StarScore out;
   out.disagreeing = count_disagreeing();
   const Vertex<2> &v = mesh_.vertex(v_);
@@ -65,45 +85,6 @@ StarScore Relocation::score() const {
   if (last != mesh_.facet(star_.front())[0]) // on the boundary the star is open
     add_edge_to(mesh_.vertex(last));
   return out;
-}
-
-bool disagrees(const Triangulation<2> &mesh, HalfFacet edge) {
-  const HalfFacet other = mesh.opposite(edge);
-  if (!other.exists() || mesh.constraint(edge) != none)
-    return false;
-  const auto [a, b] = mesh.facet(edge);
-  return metrics_disagree(mesh.vertex(a), mesh.vertex(b), mesh.vertex(mesh.apex(edge)),
-                          mesh.vertex(mesh.apex(other)));
-}
-
-bool metrics_disagree(const Vertex<2> &a, const Vertex<2> &b, const Vertex<2> &c,
-                      const Vertex<2> &e) {
-  // det = <M, K> with K = sum_i cof_i x_i x_i^T, and <|M|, S> bounds its terms
-  const Vector<2> x[3] = {a.x - e.x, b.x - e.x, c.x - e.x};
-  double K[3] = {0, 0, 0}, S[3] = {0, 0, 0};
-  for (int i = 0; i < 3; ++i) {
-    const Vector<2> &p = x[(i + 1) % 3], &q = x[(i + 2) % 3], &u = x[i];
-    const double pq = p[0] * q[1], qp = p[1] * q[0];
-    const double minor = pq - qp, size = std::abs(pq) + std::abs(qp);
-    const double xx = u[0] * u[0], xy = 2 * u[0] * u[1], yy = u[1] * u[1];
-    K[0] += minor * xx;
-    K[1] += minor * xy;
-    K[2] += minor * yy;
-    S[0] += size * xx;
-    S[1] += size * std::abs(xy);
-    S[2] += size * yy;
-  }
-  for (const Vertex<2> *v : {&a, &b, &c, &e}) {
-    const auto &M = v->M.entries;
-    const double det = M[0] * K[0] + M[1] * K[1] + M[2] * K[2];
-    const double bound =
-        detail::sphere_bound_2 * (M[0] * S[0] + std::abs(M[1]) * S[1] + M[2] * S[2]);
-    if (det > bound)
-      return true;
-    if (det >= -bound && in_metric_sphere(v->M, a.x, b.x, c.x, e.x) == Side::inside)
-      return true;
-  }
-  return false;
 }
 
 } // namespace anistar

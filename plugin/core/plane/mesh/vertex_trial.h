@@ -1,19 +1,10 @@
 #pragma once
 // Trial places of a vertex and what its star is worth there.
 
-#include "base/ellipse_sampler.h"
+#include "plane/mesh/disagreement.h"
 #include "plane/mesh/workspace.h"
 
 namespace anistar {
-
-/// Whether an edge is not Delaunay in the metric of one of the four vertices of its two
-/// cells: the local test, necessary for a certificate (the in-sphere determinant is
-/// linear in the metric, so one coefficient vector serves all four).
-[[nodiscard]] bool disagrees(const Triangulation<2> &mesh, HalfFacet edge);
-
-/// The same for the edge ab with c on its left and e on its right.
-[[nodiscard]] bool metrics_disagree(const Vertex<2> &a, const Vertex<2> &b,
-                                    const Vertex<2> &c, const Vertex<2> &e);
 
 /// What a star is judged by when its vertex is moved for agreement.
 struct StarScore {
@@ -21,8 +12,8 @@ struct StarScore {
   double quality = 1;
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
   double longest_at_end = 0; ///< in the metric of one end of an edge
-  double excess =
-      0; ///< sum over its edges of how far |ln length| is beyond a unit edge
+  /// Sum over its edges of how far |ln length| is beyond a unit edge.
+  double excess = 0;
 
   /// No worse than the bounds of a relocation, or than this part of what it was.
   [[nodiscard]] bool keeps(const StarScore &before, double part = 1) const;
@@ -38,21 +29,51 @@ struct Place {
   Index background;
 };
 
-/// Moves vertices on trial. Between gather(v) and the next one, everything is about
-/// the star of v.
-class Relocation {
+/// A vertex of a mesh of triangles that is tried at other places before it stays at
+/// one. Between gather(v) and the next one, everything is about v and its star.
+class PlaneTrial {
 public:
-  explicit Relocation(Workspace &w) : w_(w), mesh_(w.mesh) {}
+  explicit PlaneTrial(Workspace &w) : w_(w), mesh_(w.mesh) {}
 
+  /// Takes up a vertex where it is.
   void gather(Index v) {
     v_ = v;
     star_of(mesh_, v, star_);
+    from_ = {mesh_.vertex(v), mesh_.background_cell[v]};
   }
   [[nodiscard]] const std::vector<HalfFacet> &star() const { return star_; }
-  [[nodiscard]] int count_disagreeing() const;
+  /// Where it was when it was taken up.
+  [[nodiscard]] const Place &from() const { return from_; }
+
+  /// Whether every cell of the star is positive with the vertex at x, exactly.
+  [[nodiscard]] bool is_valid_at(const Vector<2> &x) const;
+  /// Whether they also keep some of their area.
+  [[nodiscard]] bool may_move_to(const Vector<2> &x) const;
+  /// x with the metric there.
+  [[nodiscard]] Place at(const Vector<2> &x) const {
+    Place out{{}, mesh_.background_cell[v_]};
+    out.vertex = w_.background.vertex(x, out.background);
+    return out;
+  }
+  void put(const Place &place) {
+    mesh_.vertex(v_) = place.vertex;
+    mesh_.background_cell[v_] = place.background;
+  }
+  void put_back() { put(from_); }
+
+  /// What the star is worth as it is.
   [[nodiscard]] StarScore score() const;
+  [[nodiscard]] int count_disagreeing() const;
   /// Whether an edge of the star is not a unit edge: a quick look before score().
   [[nodiscard]] bool has_excess() const;
+  /// What the star would be worth with the vertex at a place, to which it does not go.
+  [[nodiscard]] StarScore score_at(const Place &place) {
+    put(place);
+    const StarScore found = score();
+    put_back();
+    return found;
+  }
+
   /// visit(edge) for the edges of the star and of its link, each once.
   template <class Visit> void for_each_edge(Visit visit) const {
     for (HalfFacet h : star_) {
@@ -61,23 +82,11 @@ public:
     }
   }
 
-  [[nodiscard]] Place here() const {
-    return {mesh_.vertex(v_), mesh_.background_cell[v_]};
-  }
-  void put(const Place &place) {
-    mesh_.vertex(v_) = place.vertex;
-    mesh_.background_cell[v_] = place.background;
-  }
-  [[nodiscard]] Place at(const Vector<2> &x) const {
-    Place out{{}, mesh_.background_cell[v_]};
-    out.vertex = w_.background.vertex(x, out.background);
-    return out;
-  }
-
 private:
   Workspace &w_;
   Triangulation<2> &mesh_;
   Index v_ = none;
+  Place from_{};
   std::vector<HalfFacet> star_;
 };
 

@@ -1,4 +1,5 @@
 #include "plane/mesh/edits.h"
+#include "plane/mesh/vertex_trial.h"
 #include "plane/passes/smooth.h"
 
 #include <array>
@@ -40,7 +41,8 @@ struct Score {
 
 class Repair {
 public:
-  Repair(Workspace &w, const RepairRule &rule) : w_(w), mesh_(w.mesh), rule_(rule) {}
+  Repair(Workspace &w, const RepairRule &rule)
+      : w_(w), mesh_(w.mesh), rule_(rule), trial_(w) {}
 
   /// Tries what raises the worst quality around cell c, simplest first.
   bool improve(Index c) {
@@ -67,7 +69,7 @@ private:
   Workspace &w_;
   Triangulation<2> &mesh_;
   RepairRule rule_;
-  std::vector<HalfFacet> star_;
+  PlaneTrial trial_;
   Collapse collapse_{};
 
   [[nodiscard]] bool improves(const Score &after, const Score &before) const {
@@ -142,15 +144,13 @@ private:
   bool move(Index v) {
     if (mesh_.feature[v] != Triangulation<2>::interior)
       return false;
-    star_of(mesh_, v, star_);
-    const Vertex<2> from = mesh_.vertex(v);
-    const Index from_cell = mesh_.background_cell[v];
+    trial_.gather(v);
+    const Vertex<2> &from = trial_.from().vertex;
     const Score before = score_of_star(from);
     // unit steps of the metric: M^(-1/2) applied to directions of a circle
     const SymmetricTensor<2> step =
         matrix_function(from.M, [](double x) { return 1 / std::sqrt(x); });
-    Vertex<2> best = from;
-    Index best_cell = from_cell;
+    Place best = trial_.from();
     Score best_score = before;
     for (double radius : radii)
       for (int k = 0; k < n_directions; ++k) {
@@ -158,34 +158,24 @@ private:
             elementary::sine_cosine(2 * std::numbers::pi * k / n_directions);
         const Vector<2> direction(radius * cosine, radius * sine);
         const Vector<2> x = from.x + product<2>(step, direction);
-        if (!sees_link(x))
+        if (!trial_.is_valid_at(x))
           continue;
-        Index hint = from_cell;
-        const Vertex<2> trial = w_.background.vertex(x, hint);
-        const Score score = score_of_star(trial);
+        const Place place = trial_.at(x);
+        const Score score = score_of_star(place.vertex);
         if (improves(score, best_score)) {
-          best = trial;
-          best_cell = hint;
+          best = place;
           best_score = score;
         }
       }
     if (!improves(best_score, before))
       return false;
-    mesh_.vertex(v) = best;
-    mesh_.background_cell[v] = best_cell;
+    trial_.put(best);
     return true;
-  }
-
-  [[nodiscard]] bool sees_link(const Vector<2> &x) const {
-    return std::all_of(star_.begin(), star_.end(), [&](HalfFacet h) {
-      const auto [a, b] = mesh_.facet(h);
-      return has_volume<2>({x, mesh_.vertex(a).x, mesh_.vertex(b).x});
-    });
   }
 
   [[nodiscard]] Score score_of_star(const Vertex<2> &v) const {
     Score score;
-    for (HalfFacet h : star_) {
+    for (HalfFacet h : trial_.star()) {
       const auto [a, b] = mesh_.facet(h);
       score.cell(v, mesh_.vertex(a), mesh_.vertex(b));
       score.edge(v, mesh_.vertex(a));

@@ -1,6 +1,8 @@
 #include "plane/passes/smooth.h"
 #include "mesh/blocks.h"
+#include "plane/mesh/displacements.h"
 #include "plane/mesh/sliding_vertex.h"
+#include "plane/mesh/vertex_trial.h"
 
 #include <cmath>
 #include <memory>
@@ -16,7 +18,7 @@ constexpr int flip_cap = 40;
 class Smoother {
 public:
   Smoother(Workspace &w, Legaliser &legaliser, Target target)
-      : w_(w), legaliser_(legaliser), target_(target) {}
+      : w_(w), legaliser_(legaliser), target_(target), trial_(w) {}
 
   /// @returns false, without a change, when the star of v leaves the range.
   bool visit(Index v, const VertexRange &range) {
@@ -26,23 +28,24 @@ public:
       return true;
     if (feature == 1 && !range.is_unbounded())
       return false; // it might run into another part of the boundary
-    star_of(mesh, v, star_);
-    for (HalfFacet h : star_)
+    trial_.gather(v);
+    const std::vector<HalfFacet> &star = trial_.star();
+    for (HalfFacet h : star)
       if (!range.contains(mesh.at(h.cell())))
         return false;
-    const Vertex<2> &vertex = mesh.vertex(v);
+    const Vertex<2> &vertex = trial_.from().vertex;
     Vector<2> step = Vector<2>::Zero();
     if (feature != 1)
-      step = target_ == Target::odt ? odt_displacement(mesh, vertex, star_)
-                                    : pliant_displacement(mesh, vertex, star_);
+      step = target_ == Target::odt ? odt_displacement(mesh, vertex, star)
+                                    : pliant_displacement(mesh, vertex, star);
     const double length = std::sqrt(quadratic<2>(vertex.M, step));
     if (length > longest_move)
       step *= longest_move / length;
-    const bool moved = feature == 1 ? slide(v) : move(v, step);
+    const bool moved = feature == 1 ? slide(v) : move(step);
     if (moved && (range.is_unbounded() || target_ == Target::odt))
       legaliser_.push_star(v);
     else
-      legaliser_.push_finished(v, star_);
+      legaliser_.push_finished(v, star);
     legaliser_.run(flip_cap);
     return true;
   }
@@ -51,30 +54,25 @@ private:
   Workspace &w_;
   Legaliser &legaliser_;
   Target target_;
-  std::vector<HalfFacet> star_;
+  PlaneTrial trial_;
 
-  bool move(Index v, Vector<2> step) {
-    const Vector<2> from = w_.mesh.vertex(v).x;
+  bool move(Vector<2> step) {
+    const Vector<2> &from = trial_.from().vertex.x;
     for (int halving = 0; halving < max_halvings; ++halving, step *= .5)
-      if (may_move(w_.mesh, from, from + step, star_)) {
-        place(v, from + step);
+      if (trial_.may_move_to(from + step)) {
+        trial_.put(trial_.at(from + step));
         return true;
       }
     return false;
   }
 
-  void place(Index v, const Vector<2> &x) {
-    Index &cell = w_.mesh.background_cell[v];
-    w_.mesh.vertex(v) = w_.background.vertex(x, cell);
-  }
-
   /// Moves v along its curve to equal lengths on both sides, were the metric constant.
   /// Only edges of the curve pull: the others would drive it off its spacing.
   bool slide(Index v) {
-    const SlidingVertex on(w_, star_, v);
+    const SlidingVertex on(w_, trial_.star(), v);
     if (!on.can_slide())
       return false;
-    const Vertex<2> here = w_.mesh.vertex(v);
+    const Vertex<2> &here = trial_.from().vertex;
     const double before = edge_length(w_.mesh.vertex(on.in().v0), here);
     const double after = edge_length(here, w_.mesh.vertex(on.out().v1));
     const double shift = .5 * (after - before);
@@ -82,8 +80,8 @@ private:
         shift > 0 ? shift / after * on.room_after() : shift / before * on.room_before();
     dt = std::clamp(dt, -.4 * on.room_before(), .4 * on.room_after());
     for (int halving = 0; halving < max_halvings && dt != 0; ++halving, dt *= .5)
-      if (on.may_slide(dt) && may_move(w_.mesh, here.x, on.at(dt), star_)) {
-        place(v, on.at(dt));
+      if (on.may_slide(dt) && trial_.may_move_to(on.at(dt))) {
+        trial_.put(trial_.at(on.at(dt)));
         on.commit(dt);
         return true;
       }

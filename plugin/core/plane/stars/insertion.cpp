@@ -1,6 +1,6 @@
 #include "plane/stars/insertion.h"
 
-#include "plane/mesh/vertex_trial.h"
+#include "plane/mesh/disagreement.h"
 
 namespace anistar {
 namespace {

@@ -1,5 +1,7 @@
 #include "plane/stars/relocator.h"
 
+#include "base/ellipse_sampler.h"
+#include "plane/mesh/displacements.h"
 #include "plane/mesh/sliding_vertex.h"
 
 namespace anistar {
@@ -24,14 +26,13 @@ bool Relocator::enter(Index v, const VertexRange &range) {
   legaliser_.restrict_to(range);
   if (mesh_.feature[v] == 1 && !range.is_unbounded())
     return false;
-  relocation_.gather(v);
+  trial_.gather(v);
   return range.is_unbounded() ||
-         std::all_of(
-             relocation_.star().begin(), relocation_.star().end(), [&](HalfFacet h) {
-               const HalfFacet beyond = mesh_.opposite(h);
-               return range.contains(mesh_.at(h.cell())) &&
-                      (!beyond.exists() || range.contains(mesh_.at(beyond.cell())));
-             });
+         std::all_of(trial_.star().begin(), trial_.star().end(), [&](HalfFacet h) {
+           const HalfFacet beyond = mesh_.opposite(h);
+           return range.contains(mesh_.at(h.cell())) &&
+                  (!beyond.exists() || range.contains(mesh_.at(beyond.cell())));
+         });
 }
 
 bool Relocator::relocate(Index v, int pass, const VertexRange &range) {
@@ -54,17 +55,17 @@ bool Relocator::wander(Index v, int round, const VertexRange &range) {
 
 bool Relocator::move(Index v, double radius, int pass) {
   const Index feature = mesh_.feature[v];
-  if (feature == Triangulation<2>::corner || relocation_.count_disagreeing() == 0)
+  if (feature == Triangulation<2>::corner || trial_.count_disagreeing() == 0)
     return false;
   CounterRandom random(seed_, Stream::relocate, v, pass);
   return feature == 1 ? move_on_curve(v, random, 1) : move_freely(v, radius, random);
 }
 
 bool Relocator::move_freely(Index v, double radius, CounterRandom &random) {
-  const std::vector<HalfFacet> &star = relocation_.star();
-  const Place from = relocation_.here();
+  const std::vector<HalfFacet> &star = trial_.star();
+  const Place &from = trial_.from();
   const Vector<2> x0 = from.vertex.x;
-  const StarScore before = relocation_.score();
+  const StarScore before = trial_.score();
   const EllipseSampler ellipse(from.vertex.M);
   const Vector<2> pliant = x0 + pliant_displacement(mesh_, from.vertex, star);
   const Vector<2> odt = x0 + odt_displacement(mesh_, from.vertex, star);
@@ -74,9 +75,9 @@ bool Relocator::move_freely(Index v, double radius, CounterRandom &random) {
     Vector<2> x = k == 0 ? pliant : odt;
     if (k > 1)
       x = (k % 2 ? x0 : pliant) + ellipse.step(radius, random);
-    if (!may_move(mesh_, x0, x, star))
+    if (!trial_.may_move_to(x))
       continue;
-    const auto [place, found] = try_at(x, from);
+    const auto [place, found] = try_at(x);
     if (!found.keeps(before) || found.disagreeing >= before.disagreeing ||
         found.disagreeing > best_score.disagreeing ||
         (found.disagreeing == best_score.disagreeing &&
@@ -89,38 +90,33 @@ bool Relocator::move_freely(Index v, double radius, CounterRandom &random) {
   }
   if (best_score.disagreeing >= before.disagreeing)
     return false;
-  relocation_.put(best);
+  trial_.put(best);
   settle(v);
   return true;
 }
 
-std::pair<Place, StarScore> Relocator::try_at(const Vector<2> &x, const Place &from) {
+std::pair<Place, StarScore> Relocator::try_at(const Vector<2> &x) {
   ++counts_.trials;
-  const Place place = relocation_.at(x);
-  relocation_.put(place);
-  const StarScore found = relocation_.score();
-  relocation_.put(from);
-  return {place, found};
+  const Place place = trial_.at(x);
+  return {place, trial_.score_at(place)};
 }
 
 /// @param least_drop of the number of disagreeing edges
 bool Relocator::move_on_curve(Index v, CounterRandom &random, int least_drop) {
-  const SlidingVertex on(w_, relocation_.star(), v);
+  const SlidingVertex on(w_, trial_.star(), v);
   if (!on.can_slide())
     return resize_ball(v, random, least_drop);
-  const Place from = relocation_.here();
-  const StarScore before = relocation_.score();
+  const StarScore before = trial_.score();
   for (int k = 0; k < n_candidates; ++k) {
     const double r = 2 * last_radius * (random.uniform() - .5);
     const double dt = r * (r > 0 ? on.room_after() : on.room_before());
-    if (!on.may_slide(dt) ||
-        !may_move(mesh_, from.vertex.x, on.at(dt), relocation_.star()))
+    if (!on.may_slide(dt) || !trial_.may_move_to(on.at(dt)))
       continue;
-    const auto [place, found] = try_at(on.at(dt), from);
+    const auto [place, found] = try_at(on.at(dt));
     if (!found.keeps(before, part_kept_on_curve) ||
         found.disagreeing > before.disagreeing - least_drop)
       continue;
-    relocation_.put(place);
+    trial_.put(place);
     on.commit(dt);
     settle(v);
     return true;
@@ -162,16 +158,16 @@ void Relocator::move_randomly(Index v, int round) {
     (void)move_on_curve(v, random, 0);
     return;
   }
-  const Place from = relocation_.here();
-  const StarScore before = relocation_.score();
+  const Place &from = trial_.from();
+  const StarScore before = trial_.score();
   const EllipseSampler ellipse(from.vertex.M);
   for (int k = 0; k < n_plateau_candidates; ++k) {
     const Vector<2> x = from.vertex.x + ellipse.step(plateau_radius, random);
-    if (!may_move(mesh_, from.vertex.x, x, relocation_.star()))
+    if (!trial_.may_move_to(x))
       continue;
-    const auto [place, found] = try_at(x, from);
+    const auto [place, found] = try_at(x);
     if (found.keeps(before) && found.disagreeing <= before.disagreeing) {
-      relocation_.put(place);
+      trial_.put(place);
       settle(v);
       return;
     }
@@ -181,23 +177,23 @@ void Relocator::move_randomly(Index v, int round) {
 bool Relocator::polish(Index v, int sweep, const VertexRange &range) {
   if (!enter(v, range))
     return false;
-  if (!relocation_.has_excess())
+  if (!trial_.has_excess())
     return true;
-  const Place from = relocation_.here();
+  const Place &from = trial_.from();
   const Vector<2> x0 = from.vertex.x;
-  const StarScore before = relocation_.score();
+  const StarScore before = trial_.score();
   const EllipseSampler ellipse(from.vertex.M);
   CounterRandom random(seed_, Stream::polish, v, sweep);
-  const Vector<2> pliant = pliant_displacement(mesh_, from.vertex, relocation_.star());
+  const Vector<2> pliant = pliant_displacement(mesh_, from.vertex, trial_.star());
   Place best = from;
   double best_excess = before.excess - least_gain;
   for (int k = 0; k < n_polish_candidates; ++k) {
     const Vector<2> step =
         k < 3 ? Vector<2>((1 << k) * pliant) : ellipse.step(plateau_radius, random);
     const Vector<2> x = x0 + step;
-    if (!may_move(mesh_, x0, x, relocation_.star()))
+    if (!trial_.may_move_to(x))
       continue;
-    const auto [place, found] = try_at(x, from);
+    const auto [place, found] = try_at(x);
     if (found.excess < best_excess && found.keeps(before) &&
         found.disagreeing <= before.disagreeing) {
       best = place;
@@ -205,7 +201,7 @@ bool Relocator::polish(Index v, int sweep, const VertexRange &range) {
     }
   }
   if (best_excess < before.excess - least_gain) {
-    relocation_.put(best);
+    trial_.put(best);
     ++counts_.moves;
     list_around(v);
   }
@@ -224,8 +220,8 @@ void Relocator::settle(Index v) {
 }
 
 void Relocator::list_around(Index v) {
-  relocation_.gather(v);
-  relocation_.for_each_edge([&](HalfFacet edge) { list_if_disagreeing(edge); });
+  trial_.gather(v);
+  trial_.for_each_edge([&](HalfFacet edge) { list_if_disagreeing(edge); });
 }
 
 /// Where the vertex on the other side is in another block, which may be moving it, the

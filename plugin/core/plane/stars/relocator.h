@@ -20,7 +20,7 @@ inline constexpr int max_agreement_passes = 10;
 class Relocator {
 public:
   Relocator(Workspace &w, Legaliser &legaliser, Seed seed)
-      : w_(w), mesh_(w.mesh), legaliser_(legaliser), seed_(seed), relocation_(w) {}
+      : w_(w), mesh_(w.mesh), legaliser_(legaliser), seed_(seed), trial_(w) {}
 
   /// The three ways to move v. Each @returns false, without a change, when that would
   /// touch or ask anything outside of the range.
@@ -39,7 +39,7 @@ private:
   Triangulation<2> &mesh_;
   Legaliser &legaliser_;
   Seed seed_;
-  Relocation relocation_;
+  PlaneTrial trial_;
   std::optional<ProtectingBall> ball_; ///< once a vertex on a shell is met
   VertexRange range_;
   AgreementCounts counts_;
@@ -51,7 +51,7 @@ private:
   bool move_on_curve(Index v, CounterRandom &random, int least_drop);
   bool resize_ball(Index v, CounterRandom &random, int least_drop);
   void move_randomly(Index v, int round);
-  std::pair<Place, StarScore> try_at(const Vector<2> &x, const Place &from);
+  std::pair<Place, StarScore> try_at(const Vector<2> &x);
   void settle(Index v);
   void list_around(Index v);
   void list_if_disagreeing(HalfFacet edge);

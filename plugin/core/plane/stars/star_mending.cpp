@@ -1,6 +1,6 @@
 #include "plane/stars/star_mending.h"
 
-#include "plane/mesh/sliding_vertex.h"
+#include "base/ellipse_sampler.h"
 #include "plane/mesh/vertex_trial.h"
 #include "stars/star_mending.h"
 
@@ -26,26 +26,25 @@ public:
     if (mesh_.feature[v] != Triangulation<2>::interior)
       return false;
     trial_.gather(v);
-    const Place from = trial_.here();
+    const Vertex<2> &from = trial_.from().vertex;
     const StarScore before = trial_.score();
-    const EllipseSampler ellipse(from.vertex.M);
+    const EllipseSampler ellipse(from.M);
     for (int k = 0; k < n_places; ++k) {
-      const Vector<2> x =
-          from.vertex.x + ellipse.step(radius * (k + 1) / n_places, random);
-      if (!may_move(mesh_, from.vertex.x, x, trial_.star()))
+      const Vector<2> x = from.x + ellipse.step(radius * (k + 1) / n_places, random);
+      if (!trial_.may_move_to(x))
         continue;
       trial_.put(trial_.at(x));
       const StarScore found = trial_.score();
       if (found.keeps(before) && found.disagreeing <= before.disagreeing && accept())
         return true;
-      trial_.put(from);
+      trial_.put_back();
     }
     return false;
   }
 
 private:
   const Triangulation<2> &mesh_;
-  Relocation trial_;
+  PlaneTrial trial_;
 };
 
 } // namespace
