@@ -2,7 +2,7 @@
 
 #include "plane/mesh/edits.h"
 #include "plane/mesh/protecting_ball.h"
-#include "plane/passes/smooth.h"
+#include "plane/passes/repair.h"
 
 namespace anistar {
 namespace {

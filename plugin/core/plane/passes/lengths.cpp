@@ -1,6 +1,7 @@
+#include "plane/passes/lengths.h"
+
 #include "base/parallel.h"
 #include "plane/mesh/edits.h"
-#include "plane/passes/smooth.h"
 
 namespace anistar {
 namespace {

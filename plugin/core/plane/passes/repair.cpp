@@ -1,6 +1,7 @@
+#include "plane/passes/repair.h"
+
 #include "plane/mesh/edits.h"
 #include "plane/mesh/vertex_trial.h"
-#include "plane/passes/smooth.h"
 
 #include <array>
 

@@ -1,4 +1,5 @@
 #include "plane/passes/smooth.h"
+
 #include "mesh/blocks.h"
 #include "plane/mesh/displacements.h"
 #include "plane/mesh/sliding_vertex.h"
