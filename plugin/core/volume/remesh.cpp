@@ -179,7 +179,7 @@ VolumeResult remesh_volume(const VolumeInput &input,
     const SurfaceProjection project = timed(std::move(projection), monitor);
     const Shaping shaping = shape_volume(
         [&] { return make_volume(input, metric, background, geometry, project); },
-        monitor, settings.hausdorff, Seed{settings.seed}, settings.threads, watch);
+        run, watch);
     Volume &volume = *shaping.volume;
     VolumeStars stars(volume, run);
     certify_stars(stars, run, settings, watch, out);

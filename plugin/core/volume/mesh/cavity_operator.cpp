@@ -276,7 +276,7 @@ void CavityOperator::commit(std::span<const Index> cells) {
     // the new cells take the places of the old ones first
     outer.cell = used < cells.size() ? cells[used] : volume_.add_cell();
     ++used;
-    const std::size_t c = outer.cell;
+    const Index c = outer.cell;
     mesh.cells[c] = {outer.v[0], outer.v[1], outer.v[2], apex_};
     mesh.neighbours[c] = {};
     mesh.constraints[c] = {none, none, none, outer.constraint};
@@ -323,7 +323,7 @@ void CavityOperator::join_pairs() {
          {std::pair{one, other}, std::pair{other, one}}) {
       if (!half.exists())
         continue;
-      const std::size_t c = half.cell();
+      const Index c = half.cell();
       mesh.neighbours[c][half.facet()] = opposite;
       mesh.constraints[c][half.facet()] = pair.constraint;
       if (pair.constraint != none)

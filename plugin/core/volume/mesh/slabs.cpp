@@ -69,12 +69,11 @@ std::size_t Slabs::of_cell(const Cell<3> &cell, int round) const {
 }
 
 void Slabs::add_vertex(Index v) {
-  const std::size_t i = v;
-  if (i == strip.size()) {
+  if (std::cmp_equal(v, strip.size())) {
     strip.push_back(0);
     border.push_back(0);
   }
-  border[i] = 0;
+  border[v] = 0;
 }
 
 void Slabs::add_cell_on_strips(const Cell<3> &cell) {

@@ -17,12 +17,11 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
   }
   v = free_vertices.back();
   free_vertices.pop_back();
-  const std::size_t i = v;
-  mesh.vertices[i] = vertex;
-  mesh.feature[i] = dimension;
-  mesh.background_cell[i] = background_cell;
-  support[i] = lies_on;
-  vertex_clock[i] = clock;
+  mesh.vertices[v] = vertex;
+  mesh.feature[v] = dimension;
+  mesh.background_cell[v] = background_cell;
+  support[v] = lies_on;
+  vertex_clock[v] = clock;
   data->slabs.add_vertex(v);
   return v;
 }
@@ -79,7 +78,7 @@ void star_of(Volume &volume, Index v, std::vector<Index> &cells) {
   volume.mark_cell(first);
   cells.push_back(first);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::size_t c = cells[i];
+    const Index c = cells[i];
     const Cell<3> &cell = mesh.cells[c];
     const Neighbours<3> &around = mesh.neighbours[c];
     for (std::size_t k = 0; k < 4; ++k)

@@ -1,7 +1,7 @@
 #pragma once
 // The passes over a volume mesh: split, swap, the vertex pass, and repair.
 
-#include "base/monitor.h"
+#include "base/run.h"
 #include "remesh/remesh_settings.h"
 #include "volume/mesh/cavity_operator.h"
 #include "volume/mesh/densest_shapes.h"
@@ -43,11 +43,8 @@ struct VertexRule {
 /// Everything the passes share.
 class VolumePasses {
 public:
-  VolumePasses(Volume &volume, Monitor &monitor, const HausdorffNumbers &hausdorff,
-               Seed seed, int threads = 1)
-      : volume_(volume), operator_(volume), monitor_(monitor),
-        hausdorff_number_(hausdorff.surface), ridge_hausdorff_number_(hausdorff.curve),
-        seed_(seed), threads_(threads) {}
+  VolumePasses(Volume &volume, const Run &run)
+      : volume_(volume), run_(run), operator_(volume) {}
 
   /// Splits the longest edge of every cell that is too long, and edges that stray from
   /// their curved surface or ridge; @returns how many.
@@ -73,18 +70,11 @@ public:
   [[nodiscard]] double least_quality() const;
   [[nodiscard]] const VolumeCounts &counts() const { return counts_; }
   [[nodiscard]] bool is_full() const { return is_full_; }
-  [[nodiscard]] bool is_stopped() const {
-    return monitor_.reason() != StopReason::finished;
-  }
 
 private:
   Volume &volume_;
+  const Run &run_;
   CavityOperator operator_;
-  Monitor &monitor_;
-  double hausdorff_number_;       ///< of curved surfaces, relative to an edge
-  double ridge_hausdorff_number_; ///< and of ridges
-  Seed seed_;
-  int threads_;
   VolumeCounts counts_;
   std::array<std::uint32_t, 4> last_{};
   bool is_full_ = false; ///< a split had to be left out for want of vertices

@@ -113,15 +113,14 @@ bool VolumePasses::polish_vertex(Index v) {
 
 bool VolumePasses::polish_step(Index v, const Vector<3> &step, double floor,
                                double &worth) {
-  const std::size_t i = v;
-  Vertex<3> &here = volume_.mesh.vertices[i];
+  Vertex<3> &here = volume_.mesh.vertex(v);
   const Vector<3> x =
       volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
   if (!shapes_.are_positive(x) ||
       (volume_.feature(v) != 3 &&
-       !keeps_surfaces(volume_, star_, v, x, hausdorff_number_)))
+       !keeps_surfaces(volume_, star_, v, x, run_.hausdorff.surface)))
     return false;
-  Index at = volume_.mesh.background_cell[i];
+  Index at = volume_.mesh.background_cell[v];
   const Vertex<3> moved = volume_.background.vertex(x, at);
   densest_.evaluate(moved, poor_quality);
   const double value = densest_.sum() - poor_weight * densest_.missing();
@@ -130,7 +129,7 @@ bool VolumePasses::polish_step(Index v, const Vector<3> &step, double floor,
     return false;
   worth = value;
   here = moved;
-  volume_.mesh.background_cell[i] = at;
+  volume_.mesh.background_cell[v] = at;
   return true;
 }
 
@@ -166,7 +165,7 @@ bool VolumePasses::polish_edge(Index c, Index a, Index b) {
       continue;
     if (ring_quality(k, worst + swap_gain) > worst + swap_gain &&
         operator_.replace(shell_.all(), shell_.ring[k], {a, b},
-                          {mean_floor, swap_gain, 0, hausdorff_number_})) {
+                          {mean_floor, swap_gain, 0, run_.hausdorff.surface})) {
       ++counts_.edge_swaps;
       return true;
     }

@@ -39,7 +39,7 @@ bool VolumePasses::repair_cell(Index c) {
       note_surface_neighbours(v);
     for (Index u : cell)
       if (u != v && may_collapse(v, u) &&
-          collapse(v, u, improvement(1e-3, hausdorff_number_)))
+          collapse(v, u, improvement(1e-3, run_.hausdorff.surface)))
         return true;
   }
   for (std::size_t i = 0; i < 4; ++i)

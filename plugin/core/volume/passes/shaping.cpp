@@ -78,15 +78,15 @@ private:
 };
 
 /// Phase 2: the longest edges first, with swaps, moves and re-insertion in between.
-void grow(Volume &volume, VolumePasses &passes, int threads) {
+void grow(Volume &volume, VolumePasses &passes, const Run &run) {
   for (int round = 0; round < max_surface_rounds; ++round)
     if (passes.follow_surfaces() == 0)
       break;
   double threshold = std::max(longest_edge, passes.longest_edge() / growth_step);
-  CurveOrder order(volume, passes, threads);
+  CurveOrder order(volume, passes, run.threads);
   int converged = 0, n_steady = 0;
   bool is_lowered = false;
-  for (int round = 0; round < max_growth_rounds && !passes.is_stopped(); ++round) {
+  for (int round = 0; round < max_growth_rounds && !run.is_stopped(); ++round) {
     const bool is_last_step = threshold <= longest_edge;
     if (is_lowered)
       passes.look_everywhere(Pass::split);
@@ -122,9 +122,9 @@ void mend(VolumePasses &passes, double kept) {
 }
 
 /// Phase 3: sweeps at the final size.
-void shape(VolumePasses &passes, double kept) {
+void shape(VolumePasses &passes, const Run &run, double kept) {
   mend(passes, kept);
-  for (int sweep = 0; sweep < n_sweeps && !passes.is_stopped(); ++sweep) {
+  for (int sweep = 0; sweep < n_sweeps && !run.is_stopped(); ++sweep) {
     (void)passes.split({longest_edge, .15, .5});
     passes.swap(.7);
     passes.vertices({.62, longest_edge, sweep + 1 < n_sweeps});
@@ -132,12 +132,12 @@ void shape(VolumePasses &passes, double kept) {
   }
   passes.swap(.7);
   const bool is_steep = passes.is_metric_steep();
-  for (int k = 0; k < (is_steep ? n_steep_polishes : 1) && !passes.is_stopped(); ++k) {
+  for (int k = 0; k < (is_steep ? n_steep_polishes : 1) && !run.is_stopped(); ++k) {
     if (k > 0)
       (void)passes.split({longest_edge, .25, .5});
     passes.polish(is_steep ? 1 : polished_below);
   }
-  for (int k = 0; k < n_last_repairs && !passes.is_stopped(); ++k)
+  for (int k = 0; k < n_last_repairs && !run.is_stopped(); ++k)
     mend(passes, kept);
 }
 
@@ -147,34 +147,31 @@ void shape(VolumePasses &passes, double kept) {
 enum class Keeping { at_final_size, always };
 
 /// The mesh after phases 2 and 3.
-Shaping attempt(Volume start, Keeping keeping, Monitor &monitor,
-                const HausdorffNumbers &hausdorff, Seed seed, int threads,
-                Stopwatch &watch) {
+Shaping attempt(Volume start, Keeping keeping, const Run &run, Stopwatch &watch) {
   auto volume = std::make_unique<Volume>(std::move(start));
   const double kept =
-      kept_quality<3>(volume->mesh.vertices, volume->mesh.cells, threads);
-  VolumePasses passes(*volume, monitor, hausdorff, seed, threads);
+      kept_quality<3>(volume->mesh.vertices, volume->mesh.cells, run.threads);
+  VolumePasses passes(*volume, run);
   watch.phase("size");
   volume->data->kept_quality = keeping == Keeping::always ? kept : 0;
-  grow(*volume, passes, threads);
+  grow(*volume, passes, run);
   watch.phase("shape");
   volume->data->kept_quality = kept;
-  shape(passes, kept);
-  renumber(*volume, threads);
+  shape(passes, run, kept);
+  renumber(*volume, run.threads);
   return {std::move(volume), passes.counts(), passes.is_full(), kept,
           passes.least_quality()};
 }
 
 } // namespace
 
-Shaping shape_volume(const std::function<Volume()> &start, Monitor &monitor,
-                     const HausdorffNumbers &hausdorff, Seed seed, int threads,
+Shaping shape_volume(const std::function<Volume()> &start, const Run &run,
                      Stopwatch &watch) {
   const auto make = [&](Keeping keeping) {
-    return attempt(start(), keeping, monitor, hausdorff, seed, threads, watch);
+    return attempt(start(), keeping, run, watch);
   };
   const auto is_complete = [&](const Shaping &made) {
-    return !made.is_full && monitor.reason() == StopReason::finished;
+    return !made.is_full && !run.is_stopped();
   };
   Shaping first = make(Keeping::at_final_size);
   if (first.least >= kept_part * first.kept || !is_complete(first))

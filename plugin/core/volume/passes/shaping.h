@@ -24,7 +24,6 @@ struct Shaping {
 /// returned.
 /// @param start makes the mesh that it begins with
 [[nodiscard]] Shaping shape_volume(const std::function<Volume()> &start,
-                                   Monitor &monitor, const HausdorffNumbers &hausdorff,
-                                   Seed seed, int threads, Stopwatch &watch);
+                                   const Run &run, Stopwatch &watch);
 
 } // namespace anistar

@@ -32,7 +32,7 @@ std::uint32_t VolumePasses::begin(Pass pass) {
 }
 
 bool VolumePasses::go_on(std::size_t k, std::size_t n) {
-  return monitor_.keep_going(0, static_cast<double>(k) / static_cast<double>(n));
+  return run_.monitor.keep_going(0, static_cast<double>(k) / static_cast<double>(n));
 }
 
 double VolumePasses::longest_edge() const {
@@ -66,7 +66,7 @@ VolumePasses::LongEdge VolumePasses::longest_edge(Index c, double above) const {
 std::vector<std::uint8_t> VolumePasses::due_cells(double above,
                                                   std::uint32_t since) const {
   std::vector<std::uint8_t> due(volume_.mesh.cells.size(), 0);
-  parallel_ranges(due.size(), threads_, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(due.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto c = static_cast<Index>(k);
       due[k] = volume_.mesh.is_alive(c) && volume_.cell_clock[k] >= since &&
@@ -103,7 +103,7 @@ std::size_t VolumePasses::split(const SplitRule &rule) {
 
 bool VolumePasses::is_off_curve(Index curve, const Vertex<3> &a,
                                 const Vertex<3> &b) const {
-  return volume_.surface.strays(1, curve, a, b, ridge_hausdorff_number_);
+  return volume_.surface.strays(1, curve, a, b, run_.hausdorff.curve);
 }
 
 std::size_t VolumePasses::follow_surfaces() {
@@ -147,7 +147,7 @@ bool VolumePasses::split_curved(Index c) {
                               ? volume_.ridges.find(u, w)
                               : none;
       if (ridge != none ? is_off_curve(volume_.ridges.at(ridge).curve, p, q)
-                        : volume_.surface.strays(2, patch, p, q, hausdorff_number_)) {
+                        : volume_.surface.strays(2, patch, p, q, run_.hausdorff.surface)) {
         longest = square;
         a = u;
         b = w;
@@ -197,7 +197,7 @@ Index VolumePasses::new_vertex(const Vector<3> &x, Index dimension, Index lies_o
 
 bool VolumePasses::split_edge(Index cell, Index a, Index b, const SplitRule &rule,
                               const Acceptance &acceptance) {
-  if (!monitor_.has_room(volume_.n_vertices())) {
+  if (!run_.monitor.has_room(volume_.n_vertices())) {
     is_full_ = true;
     return false;
   }

@@ -95,7 +95,7 @@ bool VolumePasses::remove_edge(Index c, Index a, Index b) {
     if (!is_ring_better(k, better_by(swap_gain, worst)))
       continue;
     if (operator_.replace(shell_.all(), shell_.ring[k], {a, b},
-                          improvement(swap_gain, hausdorff_number_)))
+                          improvement(swap_gain, run_.hausdorff.surface)))
       return true;
     if (volume_.is_put_off)
       return false;

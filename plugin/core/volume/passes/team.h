@@ -14,9 +14,7 @@ struct VolumePasses::Helper {
   VolumePasses passes;
 
   explicit Helper(VolumePasses &first)
-      : view(first.volume_.data),
-        passes(view, first.monitor_,
-               {first.ridge_hausdorff_number_, first.hausdorff_number_}, first.seed_) {}
+      : view(first.volume_.data), passes(view, first.run_) {}
 };
 
 /// Gives the cells that are free to the slabs, for `n_items[k]` items each. The arrays
@@ -55,17 +53,17 @@ void VolumePasses::in_slabs(std::vector<Index> items, SlabOf slab_of, Visit visi
     }
     std::vector<std::vector<Index>> free_cells = deal_free_cells(volume_, waiting);
     const auto caller = std::this_thread::get_id();
-    std::atomic<bool> stopped = is_stopped();
+    std::atomic<bool> stopped = run_.is_stopped();
     std::atomic<std::size_t> next = 0;
-    while (std::cmp_less(team_.size() + 1, threads_))
+    while (std::cmp_less(team_.size() + 1, run_.threads))
       team_.push_back(std::make_shared<Helper>(*this));
     std::vector<Index> kept = std::move(volume_.free_vertices);
-    parallel_items(n, threads_, [&] {
+    parallel_items(n, run_.threads, [&] {
       VolumePasses &passes =
           std::this_thread::get_id() == caller ? *this : team_[next++]->passes;
       return [&](std::size_t k) {
         if (std::this_thread::get_id() == caller &&
-            !monitor_.look(static_cast<double>(k) / static_cast<double>(n)))
+            !run_.monitor.look(static_cast<double>(k) / static_cast<double>(n)))
           stopped = true;
         if (stopped)
           return;

@@ -123,7 +123,7 @@ bool VolumePasses::collapse_shortest(Index v, const VertexRule &rule) {
     }
   if (best == none)
     return false;
-  Acceptance acceptance{rule.collapse_floor, 1e-4, rule.longest, hausdorff_number_};
+  Acceptance acceptance{rule.collapse_floor, 1e-4, rule.longest, run_.hausdorff.surface};
   if (star_quality() < stuck_quality)
     for (Index c : star_)
       for (Index u : mesh.at(c))
@@ -173,13 +173,12 @@ Vector<3> VolumePasses::ideal_step(Index v, const Matrix<3> &L, double &worst,
 
 /// @param step in coordinates of space
 bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double sum) {
-  const std::size_t i = v;
-  Vertex<3> &here = volume_.mesh.vertices[i];
+  Vertex<3> &here = volume_.mesh.vertex(v);
   const Vector<3> x =
       volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
   if (!shapes_.are_positive(x))
     return false;
-  Index at = volume_.mesh.background_cell[i];
+  Index at = volume_.mesh.background_cell[v];
   const Vertex<3> moved = volume_.background.vertex(x, at);
   shapes_.evaluate(moved);
   const double least = shapes_.minimum(), total = shapes_.sum();
@@ -190,10 +189,10 @@ bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double
   const bool is_better = (least > better_by(1e-4, worst) && total > sum - .02 * n) ||
                          total > sum + .002 * n;
   if (!is_better || (volume_.feature(v) != 3 &&
-                     !keeps_surfaces(volume_, star_, v, x, hausdorff_number_)))
+                     !keeps_surfaces(volume_, star_, v, x, run_.hausdorff.surface)))
     return false;
   here = moved;
-  volume_.mesh.background_cell[i] = at;
+  volume_.mesh.background_cell[v] = at;
   for (std::size_t k = 0; k < star_.size(); ++k) {
     volume_.quality[star_[k]] = shapes_.quality(k);
     volume_.touch(star_[k]);
@@ -223,7 +222,7 @@ void VolumePasses::move(Index v) {
       return;
   if (worst > random_below)
     return;
-  CounterRandom random(seed_, Stream::relocate, v, volume_.clock);
+  CounterRandom random(run_.seed, Stream::relocate, v, volume_.clock);
   Vector<3> y;
   do
     for (int k = 0; k < 3; ++k)
@@ -270,7 +269,7 @@ void VolumePasses::vertices(const VertexRule &rule) {
     if (mesh.is_used(static_cast<Index>(k)) &&
         mesh.feature[k] != Triangulation<3>::corner)
       all.push_back(static_cast<Index>(k));
-  std::vector<std::uint8_t> is_placed(mesh.vertices.size(), 0);
+  PerVertex<std::uint8_t> is_placed(mesh.vertices.size(), 0);
   in_slabs(
       std::move(all),
       [&](Index v, int round) { // the graph of ridges is no slab's
@@ -278,9 +277,8 @@ void VolumePasses::vertices(const VertexRule &rule) {
                                        : volume_.data->slabs.of_star(v, round);
       },
       [&, since](VolumePasses &passes, Index v) {
-        const std::size_t k = v;
-        if (mesh.is_used(v) && volume_.vertex_clock[k] >= since)
-          passes.treat_vertex(v, rule, is_placed[k]);
+        if (mesh.is_used(v) && volume_.vertex_clock[v] >= since)
+          passes.treat_vertex(v, rule, is_placed[v]);
       });
 }
 
