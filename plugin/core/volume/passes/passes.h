@@ -7,6 +7,7 @@
 #include "volume/mesh/densest_shapes.h"
 #include "volume/mesh/shell.h"
 #include "volume/mesh/vertex_star.h"
+#include "volume/mesh/vertex_trial.h"
 
 #include <map>
 #include <memory>
@@ -44,7 +45,7 @@ struct VertexRule {
 class VolumePasses {
 public:
   VolumePasses(Volume &volume, const Run &run)
-      : volume_(volume), run_(run), operator_(volume) {}
+      : volume_(volume), run_(run), operator_(volume), trial_(volume, run.hausdorff.surface) {}
 
   /// Splits the longest edge of every cell that is too long, and edges that stray from
   /// their curved surface or ridge; @returns how many.
@@ -80,7 +81,7 @@ private:
   bool is_full_ = false; ///< a split had to be left out for want of vertices
   std::vector<Index> star_, ring_;
   Shell shell_;
-  StarShapes shapes_;
+  VertexTrial trial_;
   DensestShapes densest_;
   struct Helper;
   std::vector<std::shared_ptr<Helper>> team_; ///< a helper to a further thread
@@ -123,17 +124,14 @@ private:
   [[nodiscard]] bool collapse_shortest(Index v, const VertexRule &rule);
   [[nodiscard]] double star_quality() const;
   void move(Index v);
-  [[nodiscard]] Vector<3> ideal_step(Index v, const Matrix<3> &L, double &worst,
-                                     double &sum);
-  [[nodiscard]] bool try_move(Index v, const Vector<3> &step, double worst, double sum);
+  [[nodiscard]] bool try_move(const Vector<3> &x);
   void treat_vertex(Index v, const VertexRule &rule, std::uint8_t &is_placed);
   void reinsert(Index v, double floor);
   [[nodiscard]] bool repair_cell(Index c);
 
   void polish_vertices(double below);
   [[nodiscard]] bool polish_vertex(Index v);
-  [[nodiscard]] bool polish_step(Index v, const Vector<3> &step, double floor,
-                                 double &worth);
+  [[nodiscard]] bool polish_step(const Vector<3> &x, double floor, double &worth);
   void polish_cells(double below);
   [[nodiscard]] bool polish_edge(Index c, Index a, Index b);
   [[nodiscard]] double ring_quality(std::size_t apex, double threshold) const;

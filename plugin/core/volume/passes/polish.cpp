@@ -72,7 +72,7 @@ void VolumePasses::polish_vertices(double below) {
       continue;
     const auto v = static_cast<Index>(k);
     star_of(volume_, v, star_);
-    if (star_.size() < StarShapes::capacity && polish_vertex(v))
+    if (polish_vertex(v))
       ++counts_.moves;
   }
 }
@@ -81,11 +81,11 @@ void VolumePasses::polish_vertices(double below) {
 /// @pre star_ is the star of v.
 bool VolumePasses::polish_vertex(Index v) {
   const Triangulation<3> &mesh = volume_.mesh;
-  shapes_.clear();
+  if (star_.size() >= DensestShapes::capacity || !trial_.gather(v, star_))
+    return false;
   densest_.clear();
   for (Index c : star_) {
     const Facet<3> t = facet_of<3>(mesh.at(c), mesh.local_index(c, v));
-    shapes_.add(mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]));
     densest_.add(mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]));
   }
   densest_.evaluate(mesh.vertex(v), poor_quality);
@@ -97,39 +97,28 @@ bool VolumePasses::polish_vertex(Index v) {
   const Matrix<3> axes = lower_factor<3>(mesh.vertex(v).M).transpose().inverse();
   for (double length = longest_step; length > shortest_step; length /= 2)
     for (int k = 0; k < 3; ++k) {
-      const Vector<3> step = length * axes.col(k);
-      if (polish_step(v, step, floor, worth) || polish_step(v, -step, floor, worth))
+      const Vector<3> step = length * axes.col(k), &here = mesh.vertex(v).x;
+      if (polish_step(here + step, floor, worth) ||
+          polish_step(here - step, floor, worth))
         has_moved = true;
     }
-  if (!has_moved)
-    return false;
-  shapes_.evaluate(mesh.vertex(v));
-  for (std::size_t k = 0; k < star_.size(); ++k) {
-    volume_.quality[star_[k]] = shapes_.quality(k);
-    volume_.touch(star_[k]);
-  }
-  return true;
+  return has_moved;
 }
 
-bool VolumePasses::polish_step(Index v, const Vector<3> &step, double floor,
-                               double &worth) {
-  Vertex<3> &here = volume_.mesh.vertex(v);
-  const Vector<3> x =
-      volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
-  if (!shapes_.are_positive(x) ||
-      (volume_.feature(v) != 3 &&
-       !keeps_surfaces(volume_, star_, v, x, run_.hausdorff.surface)))
+/// Moves the vertex of the trial there when its star is worth more then.
+bool VolumePasses::polish_step(const Vector<3> &x, double floor, double &worth) {
+  trial_.place(x);
+  if (!trial_.is_positive() || !trial_.keeps_surfaces())
     return false;
-  Index at = volume_.mesh.background_cell[v];
-  const Vertex<3> moved = volume_.background.vertex(x, at);
-  densest_.evaluate(moved, poor_quality);
+  trial_.take_metric();
+  densest_.evaluate(trial_.vertex(), poor_quality);
   const double value = densest_.sum() - poor_weight * densest_.missing();
   if (value < worth + smallest_gain || densest_.minimum() < floor ||
       densest_.minimum() <= 0)
     return false;
   worth = value;
-  here = moved;
-  volume_.mesh.background_cell[v] = at;
+  (void)trial_.measure();
+  trial_.commit();
   return true;
 }
 

@@ -12,10 +12,19 @@ constexpr double stuck_quality = .1;
 constexpr double smallest_step = .02;
 /// Moves may not take the worst cell below this, or below where it is.
 constexpr double move_floor = .35;
+/// Facets of less, twice the area in the metric, tell no place of their apex.
+constexpr double smallest_facet = 1e-12;
+/// Parts of the step to the ideal place that are tried.
+constexpr double step_fractions[] = {1, .4};
 /// Random trials for stars below this quality, within this radius.
 constexpr double random_below = .4, random_radius = .2;
-/// Height of the regular tetrahedron of unit edges.
-constexpr double unit_height = .816496580927726;
+/// The ideal place is not looked for nearer than that in a star above this quality.
+constexpr double good_quality = .5;
+/// Moves that raise the worst cell may lower the mean quality of the star by so much;
+/// others must raise it by this.
+constexpr double mean_loss = .02, mean_gain = .002;
+/// What a move must add to the worst cell, and what is round-off of it.
+constexpr double least_gain = 1e-4, round_off = 1e-6;
 /// An edge whose square in the metric of one end exceeds this times the bound is not
 /// below the bound in the mean, whatever the other end says within reason.
 constexpr double clearly_longer = 4;
@@ -137,98 +146,48 @@ bool VolumePasses::collapse_shortest(Index v, const VertexRule &rule) {
   return true;
 }
 
-/// The mean of the places where each facet of the star would have its ideal apex,
-/// weighted towards the worst cells (in coordinates y = L^T x of the metric).
-Vector<3> VolumePasses::ideal_step(Index v, const Matrix<3> &L, double &worst,
-                                   double &sum) {
-  const Triangulation<3> &mesh = volume_.mesh;
-  const Vertex<3> &here = mesh.vertex(v);
-  const auto seen = [&](Index u) -> Vector<3> {
-    const Vector<3> e = mesh.vertex(u).x - here.x;
-    return {L(0, 0) * e[0] + L(1, 0) * e[1] + L(2, 0) * e[2],
-            L(1, 1) * e[1] + L(2, 1) * e[2], L(2, 2) * e[2]};
-  };
-  Vector<3> step = Vector<3>::Zero();
-  double weight = 0;
-  worst = 1;
-  sum = 0;
-  shapes_.clear();
-  for (Index c : star_) {
-    const Facet<3> t = facet_of<3>(mesh.at(c), mesh.local_index(c, v));
-    const double q = volume_.quality_of(c);
-    worst = std::min(worst, q);
-    sum += q;
-    shapes_.add(mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]));
-    const Vector<3> a = seen(t[0]), b = seen(t[1]), d = seen(t[2]);
-    const Vector<3> normal = (b - a).cross(d - a);
-    const double size = normal.norm();
-    if (!(size > 1e-12))
-      continue;
-    const double w = 1 / (q * q + .01);
-    step += w * ((a + b + d) / 3 + (unit_height / size) * normal);
-    weight += w;
-  }
-  return weight > 0 ? Vector<3>(step / weight) : Vector<3>(Vector<3>::Zero());
-}
-
-/// @param step in coordinates of space
-bool VolumePasses::try_move(Index v, const Vector<3> &step, double worst, double sum) {
-  Vertex<3> &here = volume_.mesh.vertex(v);
-  const Vector<3> x =
-      volume_.surface.place(volume_.feature(v), volume_.support_of(v), here.x + step);
-  if (!shapes_.are_positive(x))
+/// Moves v there when that makes its star better.
+bool VolumePasses::try_move(const Vector<3> &x) {
+  trial_.place(x);
+  if (!trial_.is_positive())
     return false;
-  Index at = volume_.mesh.background_cell[v];
-  const Vertex<3> moved = volume_.background.vertex(x, at);
-  shapes_.evaluate(moved);
-  const double least = shapes_.minimum(), total = shapes_.sum();
-  const double n = static_cast<double>(star_.size());
+  trial_.take_metric();
+  const StarShapes &shapes = trial_.measure();
+  const double worst = trial_.least_before(), least = shapes.minimum();
   const double floor = std::min(worst, move_floor);
-  if (least < floor - 1e-6 || least <= 0)
+  if (least < floor - round_off || least <= 0)
     return false;
-  const bool is_better = (least > better_by(1e-4, worst) && total > sum - .02 * n) ||
-                         total > sum + .002 * n;
-  if (!is_better || (volume_.feature(v) != 3 &&
-                     !keeps_surfaces(volume_, star_, v, x, run_.hausdorff.surface)))
+  const double n = static_cast<double>(shapes.size());
+  const double sum = trial_.sum_before(), total = shapes.sum();
+  const bool is_better =
+      (least > better_by(least_gain, worst) && total > sum - mean_loss * n) ||
+      total > sum + mean_gain * n;
+  if (!is_better || !trial_.keeps_surfaces())
     return false;
-  here = moved;
-  volume_.mesh.background_cell[v] = at;
-  for (std::size_t k = 0; k < star_.size(); ++k) {
-    volume_.quality[star_[k]] = shapes_.quality(k);
-    volume_.touch(star_[k]);
-  }
+  trial_.commit();
   ++counts_.moves;
   return true;
 }
 
 /// @pre star_ is the star of v.
 void VolumePasses::move(Index v) {
-  if (star_.size() > StarShapes::capacity)
+  if (!trial_.gather(v, star_))
     return;
-  const Matrix<3> L = lower_factor<3>(volume_.mesh.vertex(v).M);
-  double worst = 1, sum = 0;
-  const Vector<3> ideal = ideal_step(v, L, worst, sum);
-  if (ideal.squaredNorm() < smallest_step * smallest_step && worst > .5)
+  const Vertex<3> here = volume_.mesh.vertex(v);
+  const Matrix<3> L = lower_factor<3>(here.M);
+  const double worst = trial_.least_before();
+  const Vector<3> ideal = ideal_step(
+      volume_, v, star_, [&](const Vector<3> &step) { return in_metric(L, step); },
+      smallest_facet);
+  if (ideal.squaredNorm() < smallest_step * smallest_step && worst > good_quality)
     return;
-  const auto in_space = [&](const Vector<3> &y) -> Vector<3> { // L^T x = y
-    Vector<3> x;
-    x[2] = y[2] / L(2, 2);
-    x[1] = (y[1] - L(2, 1) * x[2]) / L(1, 1);
-    x[0] = (y[0] - L(1, 0) * x[1] - L(2, 0) * x[2]) / L(0, 0);
-    return x;
-  };
-  for (const double fraction : {1., .4})
-    if (try_move(v, in_space(fraction * ideal), worst, sum))
+  for (const double fraction : step_fractions)
+    if (try_move(here.x + in_space(L, fraction * ideal)))
       return;
   if (worst > random_below)
     return;
   CounterRandom random(run_.seed, Stream::relocate, v, volume_.clock);
-  Vector<3> y;
-  do
-    for (int k = 0; k < 3; ++k)
-      y[k] = 2 * random.uniform() - 1;
-  while (y.squaredNorm() > 1);
-  (void)try_move(v, in_space(random_radius * y), worst, sum);
+  (void)try_move(here.x + in_space(L, random_radius * random_in_ball(random)));
 }
 
 /// @pre star_ is the star of v, marked.

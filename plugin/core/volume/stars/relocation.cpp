@@ -23,30 +23,8 @@ constexpr double most_wandering_penalty = .2;
 /// gain in the mean quality of the star. Shorter steps are not worth a trial.
 constexpr double polish_fractions[] = {1, .5, .25};
 constexpr double polish_gain = 1e-3, smallest_polish = .02;
-/// Height of the regular tetrahedron of unit edges.
-constexpr double unit_height = .816496580927726;
 
 } // namespace
-
-Vector<3> in_space(const Matrix<3> &L, const Vector<3> &y) {
-  Vector<3> x;
-  x[2] = y[2] / L(2, 2);
-  x[1] = (y[1] - L(2, 1) * x[2]) / L(1, 1);
-  x[0] = (y[0] - L(1, 0) * x[1] - L(2, 0) * x[2]) / L(0, 0);
-  return x;
-}
-
-Vector<3> random_in_ball(CounterRandom &random) {
-  // every second point of the cube is in it
-  for (int k = 0; k < 64; ++k) {
-    Vector<3> y;
-    for (int i = 0; i < 3; ++i)
-      y[i] = 2 * random.uniform() - 1;
-    if (y.squaredNorm() <= 1)
-      return y;
-  }
-  return Vector<3>::Zero();
-}
 
 /// @returns false when v may not move or its star is too large.
 bool VolumeRelocation::gather(Index v) {
@@ -254,33 +232,12 @@ bool VolumeRelocation::wander(Index v, double radius, CounterRandom &random) {
   return false;
 }
 
-/// The mean of the places where each facet of the star would have its ideal apex,
-/// weighted towards the worst cells, in the coordinates L^T x of the metric.
-Vector<3> VolumeRelocation::ideal_step(const Matrix<3> &L) const {
-  const Triangulation<3> &mesh = volume_.mesh;
-  Vector<3> step = Vector<3>::Zero();
-  double weight = 0;
-  for (Index c : star_) {
-    const Facet<3> t = facet_of<3>(mesh.at(c), mesh.local_index(c, v_));
-    Vector<3> y[3];
-    for (std::size_t k = 0; k < 3; ++k)
-      y[k] = L.transpose() * (mesh.vertex(t[k]).x - trial_.x);
-    const Vector<3> normal = (y[1] - y[0]).cross(y[2] - y[0]);
-    const double size = normal.norm();
-    if (!(size > 0))
-      continue;
-    const double q = volume_.quality_of(c), w = 1 / (q * q + .01);
-    step += w * ((y[0] + y[1] + y[2]) / 3 + (unit_height / size) * normal);
-    weight += w;
-  }
-  return weight > 0 ? Vector<3>(step / weight) : step;
-}
-
 bool VolumeRelocation::polish(Index v) {
   if (!gather(v))
     return false;
   const Matrix<3> L = lower_factor<3>(trial_.M);
-  const Vector<3> start = trial_.x, step = ideal_step(L);
+  const auto seen = [&](const Vector<3> &x) -> Vector<3> { return L.transpose() * x; };
+  const Vector<3> start = trial_.x, step = ideal_step(volume_, v, star_, seen);
   if (step.squaredNorm() < smallest_polish * smallest_polish)
     return false;
   const Score before = here();

@@ -1,7 +1,7 @@
 #pragma once
 // Moves of one vertex of a volume mesh that make the metrics around it agree.
 
-#include "base/random.h"
+#include "volume/mesh/vertex_trial.h"
 #include "volume/stars/facet_margins.h"
 
 namespace anistar {
@@ -19,11 +19,6 @@ struct AgreementState {
 
 /// The quality below which nothing may fall that was not below before.
 inline constexpr double agreement_floor = .5;
-
-/// x with L^T x = y, for the lower factor L of a metric: a step in space.
-[[nodiscard]] Vector<3> in_space(const Matrix<3> &L, const Vector<3> &y);
-/// Uniform in the unit ball.
-[[nodiscard]] Vector<3> random_in_ball(CounterRandom &random);
 
 /// Moves vertices to the best of some trial places. Moves on surfaces and ridges slide
 /// along them.
@@ -108,7 +103,6 @@ private:
   [[nodiscard]] bool try_near(const Vertex<3> &from, double radius, const Score &before,
                               CounterRandom &random, Index &background_cell);
   void commit(const Vertex<3> &vertex, Index background_cell);
-  [[nodiscard]] Vector<3> ideal_step(const Matrix<3> &L) const;
 };
 
 } // namespace anistar

@@ -1,0 +1,75 @@
+#include "volume/mesh/vertex_trial.h"
+
+#include "volume/mesh/vertex_star.h"
+
+namespace anistar {
+
+Vector<3> in_space(const Matrix<3> &L, const Vector<3> &y) {
+  Vector<3> x;
+  x[2] = y[2] / L(2, 2);
+  x[1] = (y[1] - L(2, 1) * x[2]) / L(1, 1);
+  x[0] = (y[0] - L(1, 0) * x[1] - L(2, 0) * x[2]) / L(0, 0);
+  return x;
+}
+
+Vector<3> random_in_ball(CounterRandom &random) {
+  constexpr int max_draws = 64; // every second point of the cube is in the ball
+  for (int k = 0; k < max_draws; ++k) {
+    Vector<3> y;
+    for (int i = 0; i < 3; ++i)
+      y[i] = 2 * random.uniform() - 1;
+    if (y.squaredNorm() <= 1)
+      return y;
+  }
+  return Vector<3>::Zero();
+}
+
+bool VertexTrial::gather(Index v, std::span<const Index> star) {
+  if (star.size() > StarShapes::capacity)
+    return false;
+  const Triangulation<3> &mesh = volume_.mesh;
+  v_ = v;
+  star_ = star;
+  at_ = {mesh.vertex(v), mesh.background_cell[v]};
+  least_before_ = 1;
+  sum_before_ = 0;
+  shapes_.clear();
+  for (Index c : star) {
+    const Facet<3> t = facet_of<3>(mesh.at(c), mesh.local_index(c, v));
+    shapes_.add(mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]));
+    const double q = volume_.quality_of(c);
+    least_before_ = std::min(least_before_, q);
+    sum_before_ += q;
+  }
+  return true;
+}
+
+void VertexTrial::place(const Vector<3> &x) {
+  at_.vertex.x = volume_.surface.place(volume_.feature(v_), volume_.support_of(v_), x);
+}
+
+bool VertexTrial::keeps_surfaces() const {
+  return volume_.feature(v_) == Triangulation<3>::interior ||
+         anistar::keeps_surfaces(volume_, star_, v_, at_.vertex.x, hausdorff_number_);
+}
+
+void VertexTrial::take_metric() {
+  at_.background_cell = volume_.mesh.background_cell[v_];
+  at_.vertex = volume_.background.vertex(at_.vertex.x, at_.background_cell);
+}
+
+const StarShapes &VertexTrial::measure() {
+  shapes_.evaluate(at_.vertex);
+  return shapes_;
+}
+
+void VertexTrial::commit(const VertexPlace &place, std::span<const float> qualities) {
+  volume_.mesh.vertex(v_) = place.vertex;
+  volume_.mesh.background_cell[v_] = place.background_cell;
+  for (std::size_t k = 0; k < star_.size(); ++k) {
+    volume_.quality[star_[k]] = qualities[k];
+    volume_.touch(star_[k]);
+  }
+}
+
+} // namespace anistar
