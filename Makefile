@@ -47,16 +47,18 @@ docs: ## Build the documentation into docs/_build/html
 	@$(PYTHON) -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
 
-# The shared libraries that the core needs go into the wheel. It is tried where there is nothing
-# but Python: an environment of its own, no compiler on the path and no variable set.
+# The shared libraries that the core needs go into the wheel, what only the tests import does not.
+# It is tried where there is nothing but Python: an environment of its own, no compiler on the path
+# and no variable set.
 wheel: ## Build a wheel that needs no compiler into dist/, and try it
 	@./bootstrap.sh wheel
 	@rm -rf build/wheel dist && mkdir -p dist
 	@$(PYTHON) -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps \
-	  --wheel-dir build/wheel .
+	  --config-settings cmake.define.ANISTAR_FOR_TESTS=OFF --wheel-dir build/wheel .
 	@PATH="$(CURDIR)/.venv/bin:$$PATH" $(PYTHON) -m auditwheel repair --wheel-dir dist build/wheel/*.whl
 	@$(PYTHON) -m venv build/wheel/venv
 	@build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
+	@! ls build/wheel/venv/lib/python*/site-packages/anistar/_core_for_tests* 2>/dev/null
 	@cd build/wheel && env -i PATH=/nowhere venv/bin/anistar doctor
 	@ls dist/*.whl
 
@@ -67,7 +69,8 @@ SANITIZED := build/sanitize
 install_sanitized = $(PYTHON) -m pip install --quiet --disable-pip-version-check \
   --no-build-isolation --no-deps --upgrade --target $(SANITIZED)/$(1) \
   --config-settings build-dir=$(SANITIZED)/cmake-$(1) \
-  --config-settings cmake.build-type=Debug --config-settings cmake.define.$(2)=ON .
+  --config-settings cmake.build-type=Debug --config-settings cmake.define.$(2)=ON \
+  --config-settings cmake.define.ANISTAR_FOR_TESTS=ON .
 
 sanitize: ## Run the tests with the address and undefined-behaviour sanitizers
 	@./bootstrap.sh environment

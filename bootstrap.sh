@@ -143,7 +143,8 @@ install_anistar() {
   is_done anistar "$wanted" && return
   say "building and installing anistar"
   "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check \
-    --no-build-isolation --no-deps --force-reinstall .
+    --no-build-isolation --no-deps --force-reinstall \
+    --config-settings cmake.define.ANISTAR_FOR_TESTS=ON .
   mark_done anistar "$wanted"
 }
 

@@ -260,6 +260,14 @@ def test_only_the_bindings_know_python():
     assert {path.parts[0] for path in found} == {"bindings"}
 
 
+def test_the_compiled_module_exports_nothing_that_only_tests_use():
+    stub = ast.parse((PACKAGE / "_core.pyi").read_text())
+    exported = {node.name for node in stub.body if hasattr(node, "name")}
+    text = "\n".join(path.read_text() for path in sources().values())
+    text += (PACKAGE / "_core.pyi").read_text()
+    assert {name for name in exported if len(re.findall(rf"\b{name}\b", text)) < 2} == set()
+
+
 def test_cgal_stays_in_source_files_of_the_core():
     found = including("CGAL/")
     assert [str(path) for path in found if path.suffix != ".cpp"] == []

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from anistar import _core
+from anistar import _core_for_tests
 
 REGULAR = np.array([[1, 1, 1], [-1, 1, -1], [1, -1, -1], [-1, -1, 1]]) / np.sqrt(8)
 ROUND_OFF = 2.0**-53
@@ -32,7 +32,7 @@ def sum_of_squares(tetrahedron):
 
 def qualities(tetrahedron, M=None):
     metric = np.broadcast_to(np.eye(3) if M is None else M, (4, 3, 3)).copy()
-    return _core.tet_qualities(np.ascontiguousarray(tetrahedron), metric)[0]
+    return _core_for_tests.tet_qualities(np.ascontiguousarray(tetrahedron), metric)[0]
 
 
 def rotation(seed):

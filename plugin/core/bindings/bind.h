@@ -18,7 +18,6 @@ void bind_remesh(nanobind::module_ &module);
 void bind_spectra(nanobind::module_ &module);
 void bind_supermesh(nanobind::module_ &module);
 void bind_symmetric_system(nanobind::module_ &module);
-void bind_tet_shape(nanobind::module_ &module);
 void bind_vertex_graph(nanobind::module_ &module);
 void bind_surface(nanobind::module_ &module);
 void bind_volume_remesh(nanobind::module_ &module);

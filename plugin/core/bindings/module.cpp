@@ -15,7 +15,6 @@ NB_MODULE(_core, module) {
   anistar::bindings::bind_spectra(module);
   anistar::bindings::bind_supermesh(module);
   anistar::bindings::bind_symmetric_system(module);
-  anistar::bindings::bind_tet_shape(module);
   anistar::bindings::bind_vertex_graph(module);
   anistar::bindings::bind_surface(module);
   anistar::bindings::bind_volume_remesh(module);

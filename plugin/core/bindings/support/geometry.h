@@ -51,6 +51,18 @@ pairs_of(const Array2<Index> &edges) {
 }
 
 template <std::size_t d>
+[[nodiscard]] SymmetricTensor<d> tensor_of(const Array2<double> &metric) {
+  if (metric.shape(0) != d || metric.shape(1) != d)
+    throw std::invalid_argument("metric is not of shape (" + std::to_string(d) + ", " +
+                                std::to_string(d) + ")");
+  SymmetricTensor<d> M;
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      M(i, j) = metric(i, j);
+  return M;
+}
+
+template <std::size_t d>
 [[nodiscard]] std::vector<SymmetricTensor<d>> tensors_of(const Array3<double> &array) {
   if (array.shape(1) != d || array.shape(2) != d)
     throw std::invalid_argument("metric is not of shape (n, " + std::to_string(d) +

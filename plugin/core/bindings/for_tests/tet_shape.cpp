@@ -1,4 +1,4 @@
-#include "bindings/bind.h"
+#include "bindings/for_tests/bind.h"
 #include "bindings/support/geometry.h"
 #include "volume/mesh/densest_shapes.h"
 
@@ -35,11 +35,12 @@ nb::ndarray<nb::numpy, double> tet_qualities(const Array2<double> &points,
 } // namespace
 
 void bind_tet_shape(nb::module_ &module) {
-  module.def(
-      "tet_qualities", &tet_qualities, nb::arg("points").noconvert(),
-      nb::arg("metric").noconvert(),
-      "Mean ratios (m, 3) of tetrahedra given by four points each: in the mean of "
-      "the metrics, the same for a moving vertex, in the densest; -1 when flat.");
+  module.def("tet_qualities", &tet_qualities, nb::arg("points").noconvert(),
+             nb::arg("metric").noconvert(),
+             "Mean ratios (m, 3) of tetrahedra given by four points each: in "
+             "the mean of "
+             "the metrics, the same for a moving vertex, in the densest; -1 "
+             "when flat.");
 }
 
 } // namespace anistar::bindings
