@@ -29,11 +29,18 @@ lint: setup ## Check layout and spelling, Python and C++
 types: setup check-stubs ## Check the types of the installed package
 	@$(PYTHON) -m mypy --package anistar
 
+# Without the shapes of arrays, which no type checker reads.
+define write_stub
+	@$(PYTHON) -m nanobind.stubgen -q -m anistar._core -o $(1)
+	@sed -E -i 's/Annotated\[(NDArray\[[^]]*\]), dict\([^]]*\)\]/\1/g; /^from typing import Annotated$$/d' $(1)
+	@$(PYTHON) -m ruff format --quiet $(1)
+endef
+
 stubs: setup ## Write the stub of the compiled module anew
-	@$(PYTHON) -m nanobind.stubgen -q -m anistar._core -o plugin/anistar/_core.pyi
+	$(call write_stub,plugin/anistar/_core.pyi)
 
 check-stubs: setup
-	@$(PYTHON) -m nanobind.stubgen -q -m anistar._core -o build/_core.pyi
+	$(call write_stub,build/_core.pyi)
 	@diff -u plugin/anistar/_core.pyi build/_core.pyi || \
 	  { echo "the stub of the compiled module is out of date: make stubs"; exit 1; }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from .. import _core
 from ..arrays import Floats
 from ..meshes.mesh import Mesh
+from ..meshes.mesh_arrays import mesh_arrays
 
 
 def surface_curvature(mesh: Mesh, *, ridge_angle: float = 45.0) -> Floats:
@@ -66,12 +67,6 @@ def smooth_surface(mesh: Mesh, *, ridge_angle: float = 45.0) -> _core.Surface3:
         unit normals there, ``project_on_ridge(points, tag)`` those on ridges (tag None: those that
         an angle or a change of tags makes).
     """
-    return _core.Surface3(
-        mesh.points,
-        mesh.facets,
-        mesh.facet_tags,
-        mesh.edges,
-        mesh.edge_tags,
-        mesh.corners,
-        ridge_angle,
-    )
+    shape = _core.DomainShape()
+    shape.ridge_angle = ridge_angle
+    return _core.Surface3(mesh_arrays(mesh), shape)

@@ -19,6 +19,7 @@ from ..remeshing.demand import check_targets
 from ..remeshing.options import RemeshOptions
 from ..remeshing.project import Project
 from ..remeshing.remesh import Remeshed, remesh
+from ..remeshing.report import RemeshReport
 from ..report import attributes
 from ..telling import telling_once
 from ..transfer import TransferOptions, TransferReport, transfer
@@ -138,8 +139,8 @@ class AdaptReport:
     """
 
     metric_fields: tuple[str, ...]
-    metric: Any
-    remesh: Any
+    metric: Ledger
+    remesh: RemeshReport
     transfer: TransferReport
     corrections: int
     seconds: float

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass
 
+from .. import _core
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConsistencyOptions:
@@ -54,6 +56,9 @@ class ConsistencyOptions:
         if self.candidates < 1:
             raise ValueError(f"candidates must be at least 1, got {self.candidates}")
 
-    def as_parameters(self) -> dict[str, float]:
+    def as_parameters(self) -> _core.ConsistencyParameters:
         """Return the parameters for the core, where a bound that is off is infinite."""
-        return {**asdict(self), "gamma_0": math.inf if self.gamma_0 is None else self.gamma_0}
+        parameters = _core.ConsistencyParameters()
+        for name, value in asdict(self).items():
+            setattr(parameters, name, math.inf if value is None else value)
+        return parameters

@@ -13,6 +13,7 @@ from .. import _core
 from ..arrays import Floats, Ints, Longs
 from ..errors import MeshingError
 from ..meshes.mesh import Mesh
+from ..meshes.mesh_arrays import mesh_arrays
 from ..meshes.topology import (
     cell_volumes,
     edge_lengths,
@@ -143,36 +144,14 @@ _known: WeakKeyDictionary[Mesh, dict[tuple[Any, ...], SmoothShape | None]] = Wea
 def smooth_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape | None:
     """Return the shape that a geometry is taken for, None where its facets are that."""
     known = _known.setdefault(geometry, {})
-    asked = (*sorted(options.as_shape().items()), *options.frozen_tags)
+    asked = (options.shape, options.ridge_angle, *options.frozen_tags)
     if asked not in known:
         known[asked] = _found_shape(geometry, options)
     return known[asked]
 
 
 def _found_shape(geometry: Mesh, options: RemeshOptions) -> SmoothShape | None:
-    frozen = np.array(options.frozen_tags, dtype=np.int32)
-    facets = geometry.facets, geometry.facet_tags
-    if geometry.dim == 2:
-        regions = np.unique(geometry.cell_tags, return_inverse=True)[1]
-        measure, bulge, sag, edge_length = _core.facet_shapes2(
-            geometry.points,
-            geometry.cells,
-            regions.astype(np.int32),
-            *facets,
-            geometry.corners,
-            frozen,
-            options.as_shape(),
-        )
-    else:
-        measure, bulge, sag, edge_length = _core.facet_shapes3(
-            geometry.points,
-            *facets,
-            geometry.edges,
-            geometry.edge_tags,
-            geometry.corners,
-            frozen,
-            options.as_shape(),
-        )
+    measure, bulge, sag, edge_length = _core.facet_shapes(mesh_arrays(geometry), options.as_shape())
     if not (sag.any() or bulge.any()):
         return None
     cells = measures_of(geometry).cells

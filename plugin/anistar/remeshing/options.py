@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
+from .. import _core
 from ..metric.laws.refinement import check_refinement
 from .consistency_options import ConsistencyOptions
 
@@ -19,6 +19,18 @@ CURVE_HAUSDORFF = 0.019
 """A chord with the sagitta r times its length is shorter than its arc by about 8/3 r**2 of it."""
 SURFACE_HAUSDORFF = 0.1
 """The area of triangles with three such edges is smaller than the sphere's by 13 r**2 at most."""
+
+
+AGREEMENT_MODES: dict[bool | str, _core.AgreementMode] = {
+    True: _core.AgreementMode.on,
+    False: _core.AgreementMode.off,
+    "auto": _core.AgreementMode.when_possible,
+}
+CONSISTENCY_MODES: dict[bool | str, _core.ConsistencyMode] = {
+    True: _core.ConsistencyMode.on,
+    False: _core.ConsistencyMode.off,
+    "pure": _core.ConsistencyMode.pure,
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,26 +146,33 @@ class RemeshOptions:
         if not 1 <= self.threads <= 256:
             raise ValueError(f"threads must be in [1, 256], got {self.threads}")
 
-    def as_shape(self) -> dict[str, Any]:
+    def as_shape(self) -> _core.DomainShape:
         """Return what the core is told about the facets of the geometry."""
-        return {"kind": self.shape, "ridge_angle": self.ridge_angle}
+        shape = _core.DomainShape()
+        shape.kind = _core.ShapeKind[self.shape]
+        shape.ridge_angle = self.ridge_angle
+        shape.frozen_tags = np.array(self.frozen_tags, dtype=np.int32).tolist()
+        return shape
 
-    def _hausdorff_numbers(self) -> dict[str, float]:
+    def as_settings(self) -> _core.RemeshSettings:
+        """Return what the core is told in 2D and in 3D."""
+        settings = _core.RemeshSettings()
+        settings.shape = self.as_shape()
+        settings.hausdorff = self._hausdorff_numbers()
+        if self.max_vertices is not None:
+            settings.max_vertices = self.max_vertices
+        if self.max_seconds is not None:
+            settings.max_seconds = self.max_seconds
+        settings.agreement = AGREEMENT_MODES[self.agreement]
+        settings.consistency = CONSISTENCY_MODES[self.until_consistent]
+        settings.parameters = self.consistency.as_parameters()
+        settings.seed = self.seed
+        settings.threads = self.threads
+        return settings
+
+    def _hausdorff_numbers(self) -> _core.HausdorffNumbers:
         given = self.hausdorff_number
-        return {
-            "curve_hausdorff_number": CURVE_HAUSDORFF if given is None else given,
-            "surface_hausdorff_number": SURFACE_HAUSDORFF if given is None else given,
-        }
-
-    def as_settings(self) -> dict[str, Any]:
-        """Return what the core is told in 2D and in 3D, where a bound that is off is infinite."""
-        return {
-            **self._hausdorff_numbers(),
-            "max_vertices": 2**62 if self.max_vertices is None else self.max_vertices,
-            "max_seconds": math.inf if self.max_seconds is None else self.max_seconds,
-            "agreement": {True: "on", False: "off", "auto": "auto"}[self.agreement],
-            "consistency": {True: "on", False: "off", "pure": "pure"}[self.until_consistent],
-            "parameters": self.consistency.as_parameters(),
-            "seed": self.seed,
-            "threads": self.threads,
-        }
+        return _core.HausdorffNumbers(
+            curve=CURVE_HAUSDORFF if given is None else given,
+            surface=SURFACE_HAUSDORFF if given is None else given,
+        )

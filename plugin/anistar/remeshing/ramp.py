@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ..arrays import Floats
@@ -53,17 +51,6 @@ def _said(found: Refinement) -> str:
         f"the mesh that carries it can resolve, at {found.is_limited.mean():.3g} of its points; "
         "what was made is between the two: remesh it again, with the metric evaluated at its points"
     )
-
-
-def noted(raw: dict[str, Any], ramp: Refinement) -> dict[str, Any]:
-    """Return what the core returned with a note where the metric was limited."""
-    is_limited = bool(ramp.is_limited.any())
-    is_reason = is_limited and raw["stop_reason"] == "finished"
-    return {
-        **raw,
-        "limited": {"share": float(ramp.is_limited.mean()), "excess": ramp.excess},
-        "stop_reason": "max_refinement" if is_reason else raw["stop_reason"],
-    }
 
 
 def carried(mesh: Mesh, metric: Floats, new: Mesh) -> Floats:

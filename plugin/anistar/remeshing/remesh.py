@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,17 +13,17 @@ from ..arguments import require
 from ..arrays import Floats, Ints
 from ..core_errors import meshing_errors
 from ..meshes.mesh import Mesh
+from ..meshes.mesh_arrays import mesh_arrays
 from ..metric import check_metric
 from ..telling import tell
-from .contact import check_curves
+from .contact import check_curves, check_surfaces
 from .demand import check_demand
 from .fidelity import smooth_shape, surface_deviations, tag_measures
 from .options import RemeshOptions
 from .project import Project, pointwise
-from .ramp import approached, carried, noted
+from .ramp import approached, carried
 from .report import RemeshReport, report_of
 from .size_range import check_sizes
-from .volume_remesh import check_surfaces, remesh_volume
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,21 +98,23 @@ def remesh(
     _check_call(mesh, geometry, project, options)
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     scale = _unit_scale(mesh.points)
-    call = _call_core if mesh.dim == 2 else remesh_volume
     with np.errstate(over="ignore", under="ignore"):
         metric /= scale * scale  # a copy, as check_metric returns it
     check_sizes(mesh, metric, scale)
     ramp = approached(mesh, metric, scale, options.max_refinement)
     check_demand(mesh, ramp.metric, scale, options)
-    raw = noted(call(mesh, ramp.metric, geometry, project, options, scale), ramp)
-    raw["metric"] *= scale * scale
-    new = _new_mesh(raw, mesh, geometry, scale)
-    metric = carried(mesh, check_metric(M), new) if ramp.is_limited.any() else raw["metric"]
-    is_curved = mesh.dim == 2 or raw["counts"]["curved"] > 0
+    made = _made(mesh, ramp.metric, geometry, project, options, scale)
+    reached = made.metric
+    reached *= scale * scale
+    new = _new_mesh(made.mesh, mesh, geometry, scale)
+    metric = carried(mesh, check_metric(M), new) if ramp.is_limited.any() else reached
+    is_curved = mesh.dim == 2 or made.counts["curved"] > 0
     shape = smooth_shape(geometry, options) if is_curved else None
     report = report_of(
-        raw,
+        made,
         new,
+        reached,
+        ramp=ramp,
         tags=tag_measures(geometry, shape, new, has_ridges=len(mesh.edges) > 0),
         deviations=surface_deviations(geometry, shape, new) if shape and not project else (),
     )
@@ -135,24 +136,26 @@ def _check_call(
         )
     if geometry.dim != mesh.dim:
         raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh {mesh.dim}")
+    if mesh.dim == 3 and options.until_consistent == "pure":
+        raise ValueError('until_consistent="pure" exists in 2D only: use until_consistent=True')
     _check_frozen(options.frozen_tags, geometry)
 
 
-def _new_mesh(raw: dict[str, Any], mesh: Mesh, geometry: Mesh, scale: float) -> Mesh:
+def _new_mesh(made: _core.MeshArrays, mesh: Mesh, geometry: Mesh, scale: float) -> Mesh:
     """Return what the core made of a mesh, in the coordinates of that mesh."""
-    points = raw["points"]
+    points = made.points
     points /= scale
     kept = geometry if mesh.dim == 2 else mesh
-    ridges = {name: raw[name] for name in ("edges", "edge_tags") if name in raw}
     return Mesh._trusted(
         points=points,
-        cells=raw["cells"],
-        cell_tags=raw["cell_tags"],
-        facets=raw["facets"],
-        facet_tags=raw["facet_tags"],
+        cells=made.cells,
+        cell_tags=np.unique(kept.cell_tags)[made.cell_tags],
+        facets=made.facets,
+        facet_tags=made.facet_tags,
+        edges=made.edges,
+        edge_tags=made.edge_tags,
         corners=_same_points(kept.points[kept.corners], points),
         names={**mesh.names, **geometry.names},
-        **ridges,
     )
 
 
@@ -166,38 +169,29 @@ def _unit_scale(points: Floats) -> float:
     return float(np.ldexp(1.0, -int(np.frexp(extent)[1])))
 
 
-def _call_core(
+def _made(
     mesh: Mesh,
     metric: Floats,
     geometry: Mesh,
     project: Project | None,
     options: RemeshOptions,
     scale: float,
-) -> dict[str, Any]:
+) -> _core.RemeshResult:
     """Remesh in scaled coordinates, as the metric is already; what comes back is scaled.
 
-    The core knows regions by their rank, so that every tag is one, and -1 the outside.
+    In 3D the mesh itself is changed; the geometry gives the shape of its curved surfaces and
+    ridges.
     """
-    regions, ranks = np.unique(geometry.cell_tags, return_inverse=True)
+    carrier = mesh_arrays(mesh, scale=scale)
     with meshing_errors(scale):
-        raw: dict[str, Any] = _core.remesh2(
-            mesh.points * scale,
-            mesh.cells,
-            metric,
-            geometry.points * scale,
-            geometry.cells,
-            ranks.astype(np.int32),
-            geometry.facets,
-            geometry.facet_tags,
-            geometry.corners,
-            np.array(options.frozen_tags, dtype=np.int32),
-            options.as_shape(),
-            options.as_settings(),
-            None if project is None else pointwise(project, geometry, scale),
-            options.callback,
+        return _core.remesh(
+            mesh=carrier,
+            metric=metric,
+            geometry=carrier if geometry is mesh else mesh_arrays(geometry, scale=scale),
+            settings=options.as_settings(),
+            project=None if project is None else pointwise(project, geometry, scale),
+            callback=options.callback,
         )
-    raw["cell_tags"] = regions[raw["cell_tags"]]
-    return raw
 
 
 def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:

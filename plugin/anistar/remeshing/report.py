@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from .. import _core
+from .._core import ConsistencyStop, StopReason
+from ..arrays import Floats
 from ..meshes.mesh import Mesh
+from ..metric.laws.refinement import Refinement
+from .agreement import agreement_text
 from .bad_cells import BadCell, quality_bound, worst_cells
 from .fidelity import SurfaceDeviation, TagMeasure, shape_warnings
 from .long_edges import LONG_EDGE, LongEdge, longest_edges
@@ -109,38 +113,68 @@ class RemeshReport:
 
 
 def report_of(
-    raw: Mapping[str, Any],
+    made: _core.RemeshResult,
     new: Mesh,
+    metric: Floats,
+    *,
+    ramp: Refinement,
     tags: tuple[TagMeasure, ...],
     deviations: tuple[SurfaceDeviation, ...],
 ) -> RemeshReport:
-    """Return the report on what the core returned, and on its shape beside the geometry."""
+    """Return the report on what the core made, and on its shape beside the geometry.
+
+    Parameters
+    ----------
+    made : RemeshResult
+    new : Mesh
+        The mesh in it, in the coordinates of the caller.
+    metric : (n, d, d) float64
+        At its points, within the limit of refinement.
+    ramp : Refinement
+        That limit.
+    tags : tuple of TagMeasure
+    deviations : tuple of SurfaceDeviation
+    """
     n_bad: int = 0
     bad: tuple[BadCell, ...] = ()
-    bound = quality_bound(raw["kept_quality"])
-    if not raw["statistics"]["q_min"] >= bound:
-        n_bad, bad = worst_cells(new, raw["metric"], bound)
-    is_long = raw["statistics"]["edge_max"] > LONG_EDGE
+    bound = quality_bound(made.kept_quality)
+    statistics = made.statistics
+    if not statistics["q_min"] >= bound:
+        n_bad, bad = worst_cells(new, metric, bound)
+    is_long = statistics["edge_max"] > LONG_EDGE
+    stop_reason = _stop_reason(made, ramp)
     return RemeshReport(
-        converged=raw["stop_reason"] == "finished"
-        and raw["consistency"]["stop_reason"] in ("", "consistent"),
-        stop_reason=raw["stop_reason"],
-        limited=raw["limited"],
+        converged=stop_reason == "finished"
+        and made.consistency_stop in (ConsistencyStop.none_yet, ConsistencyStop.consistent),
+        stop_reason=stop_reason,
+        limited={"share": float(ramp.is_limited.mean()), "excess": ramp.excess},
         n_points=new.n_points,
         n_cells=new.n_cells,
-        statistics=raw["statistics"],
-        kept_quality=raw["kept_quality"],
+        statistics=statistics,
+        kept_quality=made.kept_quality,
         n_bad_cells=n_bad,
         bad_cells=bad,
-        long_edges=longest_edges(new, raw["metric"]) if is_long else (),
-        agreement=raw["agreement"],
-        consistency=raw["consistency"],
-        simplex_ok=raw["simplex_ok"],
-        star_ok=raw["star_ok"],
-        distortion=raw["distortion"],
+        long_edges=longest_edges(new, metric) if is_long else (),
+        agreement=agreement_text(made.agreement, new.dim),
+        consistency={**made.consistency, "stop_reason": _consistency_stop(made)},
+        simplex_ok=made.certified.simplex_ok if made.certified else None,
+        star_ok=made.certified.star_ok if made.certified else None,
+        distortion=made.distortion,
         tags=tags,
         deviations=deviations,
         warnings=shape_warnings(tags, deviations),
-        counts=raw["counts"],
-        seconds=raw["seconds"],
+        counts={name: float(count) for name, count in made.counts.items()},
+        seconds=made.seconds,
     )
+
+
+def _stop_reason(made: _core.RemeshResult, ramp: Refinement) -> str:
+    if ramp.is_limited.any() and made.stop_reason is StopReason.finished:
+        return "max_refinement"
+    return made.stop_reason.name
+
+
+def _consistency_stop(made: _core.RemeshResult) -> str:
+    """Return why it ended, empty where it was not asked for."""
+    stop = made.consistency_stop
+    return "" if stop is ConsistencyStop.none_yet else stop.name

@@ -1,42 +1,15 @@
 #pragma once
 // What stops a long call: the user, a clock, a budget.
 
-#include "base/tensor.h"
-
 #include <chrono>
 #include <cstddef>
 #include <functional>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
 namespace anistar {
 
 enum class StopReason { finished, max_vertices, max_seconds };
-
-[[nodiscard]] inline const char *name_of(StopReason reason) {
-  switch (reason) {
-  case StopReason::finished:
-    return "finished";
-  case StopReason::max_vertices:
-    return "max_vertices";
-  case StopReason::max_seconds:
-    return "max_seconds";
-  }
-  return "unknown";
-}
-
-/// Failure to make a mesh. The place is apart from the message, because the caller may
-/// measure in other units.
-class MeshingError : public std::runtime_error {
-public:
-  MeshingError(const std::string &message, const Vector<2> &place)
-      : std::runtime_error(message), place_(place) {}
-  [[nodiscard]] const Vector<2> &place() const { return place_; }
-
-private:
-  Vector<2> place_;
-};
 
 /// Thrown by Monitor::insist, where what a phase has made so far is of no use.
 struct BudgetSpent {};

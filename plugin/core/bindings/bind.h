@@ -5,21 +5,31 @@
 
 namespace anistar::bindings {
 
-void bind_certify(nanobind::module_ &module);
-void bind_combination(nanobind::module_ &module);
-void bind_elementary(nanobind::module_ &module);
-void bind_facet_pairs(nanobind::module_ &module);
-void bind_facet_shapes(nanobind::module_ &module);
-void bind_gradation(nanobind::module_ &module);
-void bind_locator(nanobind::module_ &module);
-void bind_nearest(nanobind::module_ &module);
-void bind_pieces(nanobind::module_ &module);
-void bind_remesh(nanobind::module_ &module);
-void bind_spectra(nanobind::module_ &module);
-void bind_supermesh(nanobind::module_ &module);
-void bind_symmetric_system(nanobind::module_ &module);
-void bind_vertex_graph(nanobind::module_ &module);
-void bind_surface(nanobind::module_ &module);
-void bind_volume_remesh(nanobind::module_ &module);
+namespace nb = nanobind;
+
+void bind_errors(nb::module_ &module);
+void bind_mesh_arrays(nb::module_ &module);
+
+void bind_certify(nb::module_ &module);
+
+void bind_combination(nb::module_ &module);
+void bind_elementary(nb::module_ &module);
+void bind_gradation(nb::module_ &module);
+void bind_pieces(nb::module_ &module);
+void bind_spectra(nb::module_ &module);
+void bind_vertex_graph(nb::module_ &module);
+
+void bind_facet_pairs(nb::module_ &module);
+void bind_locator(nb::module_ &module);
+void bind_nearest(nb::module_ &module);
+
+void bind_supermesh(nb::module_ &module);
+void bind_symmetric_system(nb::module_ &module);
+
+void bind_remesh_settings(nb::module_ &module);
+void bind_remesh_result(nb::module_ &module);
+void bind_remesh(nb::module_ &module);
+void bind_facet_shapes(nb::module_ &module);
+void bind_surface(nb::module_ &module);
 
 } // namespace anistar::bindings

@@ -1,21 +1,25 @@
 #include "bindings/bind.h"
 
 NB_MODULE(_core, module) {
+  using namespace anistar::bindings;
   module.doc() = "The compiled core of anistar.";
-  anistar::bindings::bind_certify(module);
-  anistar::bindings::bind_combination(module);
-  anistar::bindings::bind_elementary(module);
-  anistar::bindings::bind_facet_pairs(module);
-  anistar::bindings::bind_facet_shapes(module);
-  anistar::bindings::bind_gradation(module);
-  anistar::bindings::bind_locator(module);
-  anistar::bindings::bind_nearest(module);
-  anistar::bindings::bind_pieces(module);
-  anistar::bindings::bind_remesh(module);
-  anistar::bindings::bind_spectra(module);
-  anistar::bindings::bind_supermesh(module);
-  anistar::bindings::bind_symmetric_system(module);
-  anistar::bindings::bind_vertex_graph(module);
-  anistar::bindings::bind_surface(module);
-  anistar::bindings::bind_volume_remesh(module);
+  bind_errors(module);
+  bind_mesh_arrays(module);
+  bind_certify(module);
+  bind_combination(module);
+  bind_elementary(module);
+  bind_gradation(module);
+  bind_pieces(module);
+  bind_spectra(module);
+  bind_vertex_graph(module);
+  bind_facet_pairs(module);
+  bind_locator(module);
+  bind_nearest(module);
+  bind_supermesh(module);
+  bind_symmetric_system(module);
+  bind_remesh_settings(module); // and what is told in their terms
+  bind_remesh_result(module);
+  bind_remesh(module);
+  bind_facet_shapes(module);
+  bind_surface(module);
 }

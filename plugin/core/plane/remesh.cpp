@@ -1,5 +1,6 @@
 #include "plane/remesh.h"
 
+#include "base/errors.h"
 #include "base/stopwatch.h"
 #include "plane/geometry/outline.h"
 #include "plane/mesh/start.h"
@@ -104,12 +105,12 @@ Start make_start(Geometry &geometry, const Background<2> &background, const Run 
   }
 }
 
-void shape(Workspace &w, const Run &run, const QualityFloor &floor,
-           std::map<std::string, double> &counts) {
+ShapeCounts shape(Workspace &w, const Run &run, const QualityFloor &floor) {
+  ShapeCounts counts;
   const auto control = [&](double shortest, double longest) {
     const LengthCounts done = control_lengths(w, run, {shortest, longest});
-    counts["splits"] += static_cast<double>(done.splits);
-    counts["collapses"] += static_cast<double>(done.collapses);
+    counts.lengths.splits += done.splits;
+    counts.lengths.collapses += done.collapses;
   };
   for (const Round &round : schedule) {
     for (int k = 0; k < round.pliant_sweeps; ++k)
@@ -122,8 +123,9 @@ void shape(Workspace &w, const Run &run, const QualityFloor &floor,
     }
   }
   control(shortest_outlier, longest_outlier);
-  counts["poor"] = static_cast<double>(repair(w, run, {{repair_floor, repair_floor}}));
-  counts["bisections"] = static_cast<double>(bisect(w, run, floor));
+  counts.poor = repair(w, run, {{repair_floor, repair_floor}});
+  counts.bisections = bisect(w, run, floor);
+  return counts;
 }
 
 /// What certify_stars needs of a mesh of triangles.
@@ -131,8 +133,7 @@ class PlaneStars {
 public:
   static constexpr std::size_t d = 2;
 
-  PlaneStars(Workspace &w, const Run &run, const QualityFloor &floor,
-             RemeshResult<2> &out)
+  PlaneStars(Workspace &w, const Run &run, const QualityFloor &floor, PlaneResult &out)
       : w_(w), run_(run), floor_(floor), out_(out) {}
 
   [[nodiscard]] const Triangulation<2> &mesh() const { return w_.mesh; }
@@ -161,7 +162,7 @@ public:
   AgreementCounts agree() {
     const AgreementCounts counts = anistar::agree(w_, run_);
     // the flips after a move mind no quality
-    out_.counts["bisections"] += static_cast<double>(bisect(w_, run_, floor_));
+    out_.shape->bisections += bisect(w_, run_, floor_);
     renumber(w_, run_.threads);
     return counts;
   }
@@ -188,7 +189,7 @@ private:
   Workspace &w_;
   const Run &run_;
   const QualityFloor &floor_;
-  RemeshResult<2> &out_;
+  PlaneResult &out_;
 
   [[nodiscard]] static bool asks_for_stars(const RemeshSettings &settings) {
     return settings.agreement != AgreementMode::off ||
@@ -196,22 +197,8 @@ private:
   }
 };
 
-void take_counts(RemeshResult<2> &out) {
-  if (out.agreement.was_tried())
-    for (const auto &[name, value] :
-         {std::pair{"disagreeing_before", out.agreement.counts.before},
-          {"disagreeing_after", out.agreement.counts.after},
-          {"trials", out.agreement.counts.trials},
-          {"relocations", out.agreement.counts.moves}})
-      out.counts[name] = static_cast<double>(value);
-  if (out.stars.certified)
-    for (const auto &[name, value] : {std::pair{"star_failures", out.stars.failures},
-                                      {"star_moves", out.stars.moves}})
-      out.counts[name] = static_cast<double>(value);
-}
-
 /// Hands the arrays of the mesh over; the workspace is spent.
-void extract(Workspace &w, RemeshResult<2> &out) {
+void extract(Workspace &w, PlaneResult &out) {
   Triangulation<2> &mesh = w.mesh;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (std::size_t i = 0; i < 3; ++i) {
@@ -228,10 +215,10 @@ void extract(Workspace &w, RemeshResult<2> &out) {
 
 } // namespace
 
-RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &input,
-                       const Projection &projection, const RemeshSettings &settings,
-                       Monitor::Progress progress) {
-  RemeshResult<2> out;
+PlaneResult remesh(const Background<2> &background, const GeometryInput &input,
+                   const Projection &projection, const RemeshSettings &settings,
+                   Monitor::Progress progress) {
+  PlaneResult out;
   Monitor monitor(std::move(progress), settings.max_vertices, settings.max_seconds);
   const Run run{.monitor = monitor,
                 .hausdorff = settings.hausdorff,
@@ -244,38 +231,33 @@ RemeshResult<2> remesh(const Background<2> &background, const GeometryInput &inp
   const Projection project = timed(projection, monitor);
   Geometry geometry = make_geometry(input, &project);
   Start start = make_start(geometry, background, run, watch);
-  const std::size_t n_protected = count_balls(start.mesh.curve_edges);
-  out.counts["protected_corners"] = static_cast<double>(n_protected);
-  out.counts["unprotected_corners"] =
-      static_cast<double>(start.n_sharp_corners - n_protected);
+  out.protected_corners = count_balls(start.mesh.curve_edges);
+  out.unprotected_corners = start.n_sharp_corners - out.protected_corners;
   Workspace w{start.mesh, geometry, background, run.hausdorff.curve};
   out.kept_quality = kept_quality<2>(background.vertices(run.threads),
                                      background.locator().cells(), run.threads);
   const QualityFloor floor{out.kept_quality, steep_floor};
   // the pure mode starts from the boundary alone
   const bool is_pure = settings.consistency == ConsistencyMode::pure;
-  const RefineCounts refined = is_pure ? RefineCounts{} : refine(w, run);
+  if (!is_pure)
+    out.refinement = refine(w, run);
 
   watch.phase("shape");
   renumber(w, run.threads);
   if (!is_pure)
-    shape(w, run, floor, out.counts);
+    out.shape = shape(w, run, floor);
   renumber(w, run.threads);
 
   PlaneStars stars(w, run, floor, out);
   certify_stars(stars, run, settings, watch, out);
-  take_counts(out);
 
   watch.phase("report");
   out.statistics =
       measure(w.mesh.vertices, w.mesh.cells, w.mesh.neighbours, run.threads);
   extract(w, out);
   watch.stop();
-  out.counts["inserted"] = static_cast<double>(refined.inserted);
-  out.counts["boundary_splits"] = static_cast<double>(refined.boundary_splits);
-  out.counts["rejected"] = static_cast<double>(refined.rejected);
-  out.counts["flips"] = static_cast<double>(w.legaliser.n_flips());
-  out.counts["capped"] = static_cast<double>(w.legaliser.n_capped());
+  out.flips = w.legaliser.n_flips();
+  out.capped = w.legaliser.n_capped();
   const bool is_short = !start.has_unit_curves && !run.is_stopped();
   out.reason = is_short ? StopReason::max_vertices : monitor.reason();
   return out;

@@ -19,22 +19,25 @@ struct StarCounts {
   std::optional<CertifiedFractions> certified; ///< in the end; none: not asked
 };
 
-/// The new mesh as flat arrays, and what happened.
-template <std::size_t d> struct RemeshResult {
-  std::vector<Vertex<d>> vertices;
-  std::vector<Cell<d>> cells;
-  std::vector<Index> cell_tags;
-  std::vector<Facet<d>> facets; ///< in 3D boundary facets look outward
-  std::vector<Index> facet_tags;
+/// What happened, and how good the new mesh is.
+struct RemeshRecord {
   Statistics statistics;
   double kept_quality = 0; ///< what no cell should be below (see kept_quality.h)
   DistortionQuantiles distortion;
   AgreementReport agreement;
   StarCounts stars;
   ConsistencyCounts consistency;
-  std::map<std::string, double> counts;
   std::map<std::string, double> seconds; ///< per phase
   StopReason reason = StopReason::finished;
+};
+
+/// The new mesh as flat arrays, and its record.
+template <std::size_t d> struct RemeshResult : RemeshRecord {
+  std::vector<Vertex<d>> vertices;
+  std::vector<Cell<d>> cells;
+  std::vector<Index> cell_tags;
+  std::vector<Facet<d>> facets; ///< in 3D boundary facets look outward
+  std::vector<Index> facet_tags;
 };
 
 } // namespace anistar

@@ -2,6 +2,7 @@
 // What the remeshers of both dimensions are told.
 
 #include "base/run.h"
+#include "remesh/domain_shape.h"
 #include "stars/rules.h"
 
 namespace anistar {
@@ -12,6 +13,7 @@ namespace anistar {
 enum class AgreementMode { off, when_possible, on };
 
 struct RemeshSettings {
+  DomainShape shape{};
   HausdorffNumbers hausdorff{};
   std::size_t max_vertices = std::numeric_limits<std::size_t>::max();
   double max_seconds = std::numeric_limits<double>::infinity();

@@ -11,22 +11,6 @@ namespace anistar {
 /// Why the rounds of agreement ended.
 enum class AgreementStop { agreed, stalled, rounds, trials, interrupted };
 
-[[nodiscard]] inline const char *name_of(AgreementStop stop) {
-  switch (stop) {
-  case AgreementStop::agreed:
-    return "agreed";
-  case AgreementStop::stalled:
-    return "stalled";
-  case AgreementStop::rounds:
-    return "too many rounds";
-  case AgreementStop::trials:
-    return "too many trials";
-  case AgreementStop::interrupted:
-    return "interrupted";
-  }
-  return "unknown";
-}
-
 struct AgreementCounts {
   /// Facets on which metrics disagree: in the plane edges, by the metrics of four
   /// vertices, in space triangles, by those of five.

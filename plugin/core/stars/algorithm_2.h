@@ -85,21 +85,23 @@ struct RoundBounds {
   int patience = 0;         ///< rounds that bring nothing
   double most_vertices = 0; ///< the mesh may grow to
 
-  /// Why no round follows on those done; empty when one does.
-  [[nodiscard]] std::string stop(bool is_consistent, int rounds, int without_gain,
-                                 std::size_t n_vertices, Monitor &monitor) const {
+  /// Why no round follows on those done.
+  [[nodiscard]] ConsistencyStop stop(bool is_consistent, int rounds, int without_gain,
+                                     std::size_t n_vertices, Monitor &monitor) const {
     if (is_consistent)
-      return "consistent";
+      return ConsistencyStop::consistent;
     if (rounds == max_rounds)
-      return "max_rounds";
+      return ConsistencyStop::max_rounds;
     if (static_cast<double>(n_vertices) > most_vertices)
-      return "max_growth";
+      return ConsistencyStop::max_growth;
     if (without_gain > patience)
-      return "stalled";
+      return ConsistencyStop::stalled;
     if (!monitor.keep_going(n_vertices, 0) ||
         !monitor.look(double(rounds) / max_rounds))
-      return name_of(monitor.reason());
-    return "";
+      return monitor.reason() == StopReason::max_seconds
+                 ? ConsistencyStop::max_seconds
+                 : ConsistencyStop::max_vertices;
+    return ConsistencyStop::none_yet;
   }
 };
 
@@ -144,7 +146,7 @@ insert_until_consistent(Rounds &rounds, const Run &run,
     bounds.patience = rounds.patience(bad.size());
     counts.stop = bounds.stop(bad.empty(), counts.rounds, rounds.rounds_without_gain(),
                               rounds.n_vertices(), run.monitor);
-    if (!counts.stop.empty())
+    if (counts.stop != ConsistencyStop::none_yet)
       break;
     rounds.treat(bad, counts, known);
     failing = failing_fraction(rounds.mesh(), known.bits);

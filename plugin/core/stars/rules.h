@@ -6,8 +6,6 @@
 #include "mesh/statistics.h"
 #include "mesh/triangulation.h"
 
-#include <string>
-
 namespace anistar {
 
 /// The parameters of the paper, by their names there.
@@ -28,13 +26,24 @@ enum class ConsistencyMode { off, on, pure };
 
 enum class Rule { kept, size, radius_edge, sliver, inconsistency };
 
+/// Why no round of insertions follows; `none_yet` while one does.
+enum class ConsistencyStop {
+  none_yet,
+  consistent,
+  stalled,
+  max_growth,
+  max_rounds,
+  max_vertices,
+  max_seconds
+};
+
 struct ConsistencyCounts {
   std::size_t size = 0, radius_edge = 0, sliver = 0, inconsistency = 0;
   std::size_t boundary = 0; ///< splits at encroached constrained facets
   std::size_t moves = 0;    ///< of vertices, in 3D
   int rounds = 0;
   double ln_gamma_p90 = 0; ///< of the edges of the cells that fail in the end
-  std::string stop; ///< consistent, stalled, max_growth, max_rounds, or the monitor's
+  ConsistencyStop stop = ConsistencyStop::none_yet;
 
   void add(Rule rule) {
     switch (rule) {

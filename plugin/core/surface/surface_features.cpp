@@ -180,8 +180,7 @@ private:
     for (std::size_t f = 0; f < in_.facets.size(); ++f) {
       Patch &patch = out_.patches[patch_of(f)];
       patch.tag = in_.facet_tags[f];
-      patch.is_frozen = std::find(in_.frozen_tags.begin(), in_.frozen_tags.end(),
-                                  patch.tag) != in_.frozen_tags.end();
+      patch.is_frozen = in_.shape.is_frozen(patch.tag);
       const Vector<3> m = normal(f);
       if (m.squaredNorm() > largest[patch_of(f)]) {
         largest[patch_of(f)] = m.squaredNorm();

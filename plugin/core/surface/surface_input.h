@@ -17,7 +17,6 @@ struct SurfaceInput {
   std::span<const std::array<Index, 2>> edges;
   std::span<const Index> edge_tags;
   std::span<const Index> corners;
-  std::span<const Index> frozen_tags; ///< facets with these stay as they are
   DomainShape shape;
 };
 

@@ -114,40 +114,7 @@ void take_mesh(Volume &volume, VolumeResult &out) {
   out.vertices = std::move(volume.mesh.vertices);
   out.cells = std::move(volume.mesh.cells);
   out.cell_tags = std::move(volume.mesh.region);
-  out.counts["curved"] = volume.surface.is_curved() ? 1 : 0;
-}
-
-void take_counts(const VolumeCounts &counts, VolumeResult &out) {
-  for (const auto &[name, value] : {std::pair{"splits", counts.splits},
-                                    {"collapses", counts.collapses},
-                                    {"edge_swaps", counts.edge_swaps},
-                                    {"face_swaps", counts.face_swaps},
-                                    {"moves", counts.moves},
-                                    {"insertions", counts.insertions},
-                                    {"repairs", counts.repairs}})
-    out.counts[name] = static_cast<double>(value);
-}
-
-void take_counts(const RemeshSettings &settings, VolumeResult &out) {
-  const AgreementCounts &agreed = out.agreement.counts;
-  if (out.agreement.was_tried())
-    for (const auto &[name, value] :
-         {std::pair{"disagreeing_before", agreed.before},
-          {"disagreeing_after", agreed.after},
-          {"trials", agreed.trials},
-          {"relocations", agreed.moves},
-          {"agreement_swaps", agreed.swaps},
-          {"agreement_insertions", agreed.reinsertions},
-          {"agreement_repairs", agreed.repairs},
-          {"polishes", agreed.polishes},
-          {"agreement_rounds", static_cast<std::size_t>(agreed.rounds)}})
-      out.counts[name] = static_cast<double>(value);
-  if (!out.stars.certified)
-    return;
-  out.counts["star_failures"] = static_cast<double>(out.stars.failures);
-  out.counts["star_moves"] = static_cast<double>(out.stars.moves);
-  if (settings.consistency != ConsistencyMode::off)
-    out.counts["consistency_moves"] = static_cast<double>(out.consistency.moves);
+  out.is_curved = volume.surface.is_curved();
 }
 
 /// The user's projection, each call of which may take long.
@@ -185,11 +152,10 @@ VolumeResult remesh_volume(const VolumeInput &input,
     certify_stars(stars, run, settings, watch, out);
     if (out.stars.certified)
       renumber(volume, run.threads);
-    take_counts(settings, out);
     watch.phase("report");
     out.kept_quality = shaping.kept;
     take_mesh(volume, out);
-    take_counts(shaping.counts, out);
+    out.passes = shaping.counts;
     const bool is_over = shaping.is_full || out.vertices.size() > settings.max_vertices;
     out.reason = monitor.reason();
     // what the clock has ended may end elsewhere the next time: that is told first

@@ -8,10 +8,13 @@
 
 namespace anistar {
 
-/// What every remesher returns, with the ridges that were given.
+/// What every remesher returns, with the ridges that were given and the operations made
+/// in space.
 struct VolumeResult : RemeshResult<3> {
   std::vector<std::array<Index, 2>> edges;
   std::vector<Index> edge_tags;
+  bool is_curved = false; ///< some surface or ridge is
+  VolumeCounts passes;
 };
 
 /// @param metric at the points of the input mesh, which carry it from then on

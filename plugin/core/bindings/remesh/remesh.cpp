@@ -1,81 +1,90 @@
-#include "plane/remesh.h"
 #include "bindings/bind.h"
-#include "bindings/remesh/report.h"
-#include "bindings/remesh/settings.h"
-#include "bindings/support/geometry.h"
+#include "bindings/remesh/geometry_inputs.h"
+#include "bindings/remesh/result.h"
+#include "bindings/support/interrupt.h"
 
-#include <nanobind/stl/function.h>
-#include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
+#include <nanobind/stl/array.h>
+
+#include <utility>
 
 namespace anistar::bindings {
 namespace {
 
-Projection projection_of(nb::handle project) {
+/// The user's function of d coordinates and a tag, which returns d coordinates.
+template <std::size_t d>
+std::function<Vector<d>(const Vector<d> &, Index)> projection_of(nb::handle project) {
   if (project.is_none())
     return {};
-  return [project](const Vector<2> &x, Index tag) -> Vector<2> {
+  return [project](const Vector<d> &x, Index tag) -> Vector<d> {
     nb::gil_scoped_acquire acquire;
-    const auto moved = nb::cast<std::pair<double, double>>(project(x[0], x[1], tag));
-    return {moved.first, moved.second};
+    const auto call = [&]<std::size_t... i>(std::index_sequence<i...>) {
+      return project(x[i]..., tag);
+    };
+    const auto moved =
+        nb::cast<std::array<double, d>>(call(std::make_index_sequence<d>()));
+    return Eigen::Map<const Vector<d>>(moved.data());
   };
 }
 
-nb::dict remesh2(const Array2<double> &points, const Array2<Index> &cells,
-                 const Array3<double> &metric, const Array2<double> &geometry_points,
-                 const Array2<Index> &geometry_cells,
-                 const Array1<Index> &geometry_cell_tags,
-                 const Array2<Index> &geometry_facets,
-                 const Array1<Index> &geometry_facet_tags, const Array1<Index> &corners,
-                 const Array1<Index> &frozen_tags, const nb::dict &shape,
-                 const nb::dict &settings, const nb::object &project,
-                 const nb::object &callback) {
+/// The functions that Python may give; None: there is none.
+struct Callbacks {
+  nb::handle project, progress;
+};
+
+ResultArrays remeshed_plane(const MeshArrays &mesh, const Array3<double> &metric,
+                            const MeshArrays &geometry, const RemeshSettings &settings,
+                            const Callbacks &callbacks) {
   const auto tensors = tensors_of<2>(metric);
-  const GeometryInput geometry{
-      points_of<2>(geometry_points),   cells_of<2>(geometry_cells),
-      indices_of(geometry_cell_tags),  facets_of<2>(geometry_facets),
-      indices_of(geometry_facet_tags), indices_of(corners),
-      indices_of(frozen_tags),         shape_of(shape)};
-  const RemeshSettings chosen = settings_of(settings);
-  const Projection projection = projection_of(project);
-  RemeshResult<2> out;
+  const GeometryInput input = curves_of(geometry, settings.shape);
+  PlaneResult out;
   {
     nb::gil_scoped_release release;
-    const Background<2> background(points_of<2>(points), cells_of<2>(cells), tensors,
-                                   chosen.threads);
-    out = remesh(background, geometry, projection, chosen, progress_of(callback));
+    const Background<2> background(points_of<2>(mesh.points), cells_of<2>(mesh.cells),
+                                   tensors, settings.threads);
+    out = remesh(background, input, projection_of<2>(callbacks.project), settings,
+                 progress_of(callbacks.progress));
   }
-  return as_dict<2>(out);
+  return ResultArrays(std::move(out));
+}
+
+ResultArrays remeshed_volume(const MeshArrays &mesh, const Array3<double> &metric,
+                             const MeshArrays &geometry, const RemeshSettings &settings,
+                             const Callbacks &callbacks) {
+  const auto tensors = tensors_of<3>(metric);
+  const VolumeInput input{cells_of<3>(mesh.cells), indices_of(mesh.cell_tags),
+                          surfaces_of(mesh, settings.shape)};
+  SurfaceInput surfaces = surfaces_of(geometry, settings.shape);
+  surfaces.corners = {}; // those of the mesh stay
+  VolumeResult out;
+  {
+    nb::gil_scoped_release release;
+    out = remesh_volume(input, tensors, surfaces, projection_of<3>(callbacks.project),
+                        settings, progress_of(callbacks.progress));
+  }
+  return ResultArrays(std::move(out));
+}
+
+ResultArrays remesh_arrays(const MeshArrays &mesh, const Array3<double> &metric,
+                           const MeshArrays &geometry, const RemeshSettings &settings,
+                           const nb::object &project, const nb::object &callback) {
+  const std::size_t d = mesh.dimension();
+  if (geometry.dimension() != d)
+    throw std::invalid_argument("mesh and geometry differ in dimension");
+  if (metric.shape(0) != mesh.points.shape(0))
+    throw std::invalid_argument("metric must have a tensor for every point");
+  const Callbacks callbacks{project, callback};
+  return d == 2 ? remeshed_plane(mesh, metric, geometry, settings, callbacks)
+                : remeshed_volume(mesh, metric, geometry, settings, callbacks);
 }
 
 } // namespace
 
 void bind_remesh(nb::module_ &module) {
-  static nb::handle error_type =
-      PyErr_NewException("anistar._core.MeshingError", PyExc_RuntimeError, nullptr);
-  module.attr("MeshingError") = error_type;
-  nb::register_exception_translator([](const std::exception_ptr &thrown, void *) {
-    try {
-      std::rethrow_exception(thrown);
-    } catch (const MeshingError &error) {
-      const auto arguments =
-          nb::make_tuple(error.what(), error.place()[0], error.place()[1]);
-      PyErr_SetObject(error_type.ptr(), arguments.ptr());
-    } catch (const std::domain_error &error) { // of what was checked: a failure of ours
-      const auto arguments = nb::make_tuple(error.what());
-      PyErr_SetObject(error_type.ptr(), arguments.ptr());
-    }
-  });
-  module.def(
-      "remesh2", &remesh2, nb::arg("points").noconvert(), nb::arg("cells").noconvert(),
-      nb::arg("metric").noconvert(), nb::arg("geometry_points").noconvert(),
-      nb::arg("geometry_cells").noconvert(), nb::arg("geometry_cell_tags").noconvert(),
-      nb::arg("geometry_facets").noconvert(),
-      nb::arg("geometry_facet_tags").noconvert(), nb::arg("corners").noconvert(),
-      nb::arg("frozen_tags").noconvert(), nb::arg("shape"), nb::arg("settings"),
-      nb::arg("project").none(), nb::arg("callback").none(),
-      "A mesh of the geometry with unit edges in the metric that the mesh "
-      "(points, cells) carries.");
+  module.def("remesh", &remesh_arrays, nb::kw_only(), nb::arg("mesh"),
+             nb::arg("metric").noconvert(), nb::arg("geometry"), nb::arg("settings"),
+             nb::arg("project").none(), nb::arg("callback").none(),
+             "A mesh of the geometry with unit edges in the metric that the mesh "
+             "carries.");
 }
 
 } // namespace anistar::bindings

@@ -1,75 +1,66 @@
-#include "bindings/remesh/settings.h"
+#include "bindings/bind.h"
+#include "remesh/remesh_settings.h"
 
-#include <nanobind/stl/string.h>
-
-#include <stdexcept>
+#include <nanobind/stl/vector.h>
 
 namespace anistar::bindings {
 namespace {
 
-[[nodiscard]] AgreementMode agreement_mode(const std::string &name) {
-  if (name == "off")
-    return AgreementMode::off;
-  if (name == "auto")
-    return AgreementMode::when_possible;
-  if (name == "on")
-    return AgreementMode::on;
-  throw std::invalid_argument("unknown agreement mode '" + name + "'");
+void bind_domain_shape(nb::module_ &module) {
+  nb::enum_<ShapeKind>(module, "ShapeKind")
+      .value("smooth", ShapeKind::smooth)
+      .value("polyhedron", ShapeKind::polyhedron);
+  nb::class_<DomainShape>(module, "DomainShape", "What the facets of a geometry mean.")
+      .def(nb::init<>())
+      .def_rw("kind", &DomainShape::kind)
+      .def_rw("ridge_angle", &DomainShape::ridge_angle)
+      .def_rw("frozen_tags", &DomainShape::frozen_tags);
 }
 
-[[nodiscard]] ConsistencyMode consistency_mode(const std::string &name) {
-  if (name == "off")
-    return ConsistencyMode::off;
-  if (name == "on")
-    return ConsistencyMode::on;
-  if (name == "pure")
-    return ConsistencyMode::pure;
-  throw std::invalid_argument("unknown consistency mode '" + name + "'");
-}
-
-[[nodiscard]] ConsistencyParameters parameters_of(const nb::dict &given) {
-  const auto value = [&](const char *name) { return nb::cast<double>(given[name]); };
-  return {value("alpha_0"),
-          value("rho_0"),
-          value("sigma_0"),
-          value("gamma_0"),
-          value("delta"),
-          value("beta"),
-          nb::cast<int>(given["candidates"]),
-          value("max_growth")};
+void bind_consistency(nb::module_ &module) {
+  nb::enum_<ConsistencyMode>(module, "ConsistencyMode")
+      .value("off", ConsistencyMode::off)
+      .value("on", ConsistencyMode::on)
+      .value("pure", ConsistencyMode::pure);
+  using Parameters = ConsistencyParameters;
+  nb::class_<Parameters>(module, "ConsistencyParameters", "Parameters of Algorithm 2.")
+      .def(nb::init<>())
+      .def_rw("alpha_0", &Parameters::alpha_0)
+      .def_rw("rho_0", &Parameters::rho_0)
+      .def_rw("sigma_0", &Parameters::sigma_0)
+      .def_rw("gamma_0", &Parameters::gamma_0)
+      .def_rw("delta", &Parameters::delta)
+      .def_rw("beta", &Parameters::beta)
+      .def_rw("candidates", &Parameters::candidates)
+      .def_rw("max_growth", &Parameters::max_growth);
 }
 
 } // namespace
 
-RemeshSettings settings_of(const nb::dict &given) {
-  RemeshSettings out;
-  out.hausdorff = {nb::cast<double>(given["curve_hausdorff_number"]),
-                   nb::cast<double>(given["surface_hausdorff_number"])};
-  out.max_vertices = nb::cast<std::size_t>(given["max_vertices"]);
-  out.max_seconds = nb::cast<double>(given["max_seconds"]);
-  out.agreement = agreement_mode(nb::cast<std::string>(given["agreement"]));
-  out.consistency = consistency_mode(nb::cast<std::string>(given["consistency"]));
-  out.parameters = parameters_of(nb::cast<nb::dict>(given["parameters"]));
-  out.seed = nb::cast<std::uint64_t>(given["seed"]);
-  out.threads = nb::cast<int>(given["threads"]);
-  return out;
-}
-
-DomainShape shape_of(const nb::dict &given) {
-  const auto kind = nb::cast<std::string>(given["kind"]);
-  if (kind != "smooth" && kind != "polyhedron")
-    throw std::invalid_argument("unknown kind of shape '" + kind + "'");
-  return {kind == "polyhedron", nb::cast<double>(given["ridge_angle"])};
-}
-
-Monitor::Progress progress_of(nb::handle callback) {
-  return [callback](const std::string &phase, double fraction) {
-    nb::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0)
-      throw nb::python_error();
-    if (!callback.is_none())
-      callback(phase, fraction);
-  };
+void bind_remesh_settings(nb::module_ &module) {
+  bind_domain_shape(module);
+  bind_consistency(module);
+  nb::enum_<AgreementMode>(module, "AgreementMode")
+      .value("off", AgreementMode::off)
+      .value("when_possible", AgreementMode::when_possible)
+      .value("on", AgreementMode::on);
+  nb::class_<HausdorffNumbers>(module, "HausdorffNumbers",
+                               "Largest distances of curves and of surfaces "
+                               "from an edge, relative to its length.")
+      .def(nb::init<double, double>(), nb::kw_only(), nb::arg("curve"),
+           nb::arg("surface"));
+  nb::class_<RemeshSettings>(module, "RemeshSettings",
+                             "What a remesher is told; a bound that is not set is off.")
+      .def(nb::init<>())
+      .def_rw("shape", &RemeshSettings::shape)
+      .def_rw("hausdorff", &RemeshSettings::hausdorff)
+      .def_rw("max_vertices", &RemeshSettings::max_vertices)
+      .def_rw("max_seconds", &RemeshSettings::max_seconds)
+      .def_rw("agreement", &RemeshSettings::agreement)
+      .def_rw("consistency", &RemeshSettings::consistency)
+      .def_rw("parameters", &RemeshSettings::parameters)
+      .def_rw("seed", &RemeshSettings::seed)
+      .def_rw("threads", &RemeshSettings::threads);
 }
 
 } // namespace anistar::bindings

@@ -1,5 +1,5 @@
 #include "bindings/bind.h"
-#include "bindings/support/geometry.h"
+#include "bindings/remesh/geometry_inputs.h"
 #include "surface/smooth_surface.h"
 
 #include <nanobind/stl/optional.h>
@@ -7,22 +7,6 @@
 
 namespace anistar::bindings {
 namespace {
-
-[[nodiscard]] SurfaceInput input_of(const Array2<double> &points,
-                                    const Array2<Index> &facets,
-                                    const Array1<Index> &facet_tags,
-                                    const Array2<Index> &edges,
-                                    const Array1<Index> &edge_tags,
-                                    const Array1<Index> &corners, double ridge_angle) {
-  return {points_of<3>(points),
-          facets_of<3>(facets),
-          indices_of(facet_tags),
-          pairs_of(edges),
-          indices_of(edge_tags),
-          indices_of(corners),
-          {},
-          {false, ridge_angle}};
-}
 
 /// Feet and normals, row by row.
 [[nodiscard]] auto feet_of(const CurvedPieces &pieces, const Array2<double> &queries) {
@@ -36,7 +20,8 @@ namespace {
       normals[k] = foot.normal.normalized();
     }
   }
-  return std::make_tuple(rows<double, 3>(feet), rows<double, 3>(normals));
+  return std::make_tuple(rows<double, 3>(std::move(feet)),
+                         rows<double, 3>(std::move(normals)));
 }
 
 [[nodiscard]] auto curvatures(const SmoothSurface &surface, std::size_t n_points) {
@@ -59,17 +44,13 @@ void bind_surface(nb::module_ &module) {
                             "The smooth surfaces and ridges through given facets.")
       .def(
           "__init__",
-          [](SmoothSurface *self, const Array2<double> &points,
-             const Array2<Index> &facets, const Array1<Index> &facet_tags,
-             const Array2<Index> &edges, const Array1<Index> &edge_tags,
-             const Array1<Index> &corners, double ridge_angle) {
-            new (self) SmoothSurface(input_of(points, facets, facet_tags, edges,
-                                              edge_tags, corners, ridge_angle));
+          [](SmoothSurface *self, const MeshArrays &geometry,
+             const DomainShape &shape) {
+            if (geometry.dimension() != 3)
+              throw std::invalid_argument("surfaces are those of a 3D mesh");
+            new (self) SmoothSurface(surfaces_of(geometry, shape));
           },
-          nb::arg("points").noconvert(), nb::arg("facets").noconvert(),
-          nb::arg("facet_tags").noconvert(), nb::arg("edges").noconvert(),
-          nb::arg("edge_tags").noconvert(), nb::arg("corners").noconvert(),
-          nb::arg("ridge_angle"))
+          nb::arg("geometry"), nb::arg("shape"))
       .def(
           "project",
           [](const SmoothSurface &self, const Array2<double> &queries, Index tag) {
@@ -97,7 +78,7 @@ void bind_surface(nb::module_ &module) {
             std::vector<std::array<Index, 2>> edges;
             for (const RidgeSegment &ridge : self.segments())
               edges.push_back(ridge.ends);
-            return rows<Index, 2>(edges);
+            return rows<Index, 2>(std::move(edges));
           },
           "The edges that are ridges, (k, 2).")
       .def(
@@ -106,7 +87,8 @@ void bind_surface(nb::module_ &module) {
             return curvatures(self, n_points);
           },
           nb::arg("n_points"),
-          "The (n, 3, 3) curvature tensors at the points: principal curvatures with "
+          "The (n, 3, 3) curvature tensors at the points: principal curvatures "
+          "with "
           "their directions, of the most curved patch; zero off the surfaces.");
 }
 

@@ -21,7 +21,7 @@ template <std::size_t d> void bind_dimension(nb::module_ &module, const char *na
           nb::gil_scoped_release release;
           pairs = close_facets<d>(p, f, contact);
         }
-        return rows<Index, 2>(pairs);
+        return rows<Index, 2>(std::move(pairs));
       },
       nb::arg("points").noconvert(), nb::arg("facets").noconvert(), nb::arg("contact"),
       "Pairs of facets without a clear gap between them, each once, (n, 2).");

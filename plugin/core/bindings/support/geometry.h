@@ -77,13 +77,11 @@ template <std::size_t d>
   return out;
 }
 
-/// Rows of plain numbers as an (n, width) array.
+/// Rows of plain numbers as an (n, width) array, without copy.
 template <class T, std::size_t width, class Row>
-[[nodiscard]] auto rows(const std::vector<Row> &values) {
+[[nodiscard]] nb::ndarray<nb::numpy, T> rows(std::vector<Row> &&values) {
   static_assert(sizeof(Row) == width * sizeof(T));
-  const T *data = reinterpret_cast<const T *>(values.data());
-  return owned(std::vector<T>(data, data + values.size() * width),
-               {values.size(), width});
+  return owned_rows<T>(std::move(values), {values.size(), width});
 }
 
 } // namespace anistar::bindings

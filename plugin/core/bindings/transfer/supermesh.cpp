@@ -1,22 +1,12 @@
 #include "transfer/supermesh.h"
 #include "bindings/bind.h"
 #include "bindings/support/geometry.h"
+#include "bindings/support/interrupt.h"
 
 #include <limits>
 
 namespace anistar::bindings {
 namespace {
-
-/// Lets Ctrl-C and an exception in the user's callback unwind the core.
-Monitor::Progress interruptible(nb::handle callback) {
-  return [callback](const std::string &phase, double fraction) {
-    nb::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0)
-      throw nb::python_error();
-    if (!callback.is_none())
-      callback(phase.c_str(), fraction);
-  };
-}
 
 void put_rows(nb::dict &out, const char *name, SparseRows &&rows) {
   const std::size_t n = rows.starts.size(), n_entries = rows.columns.size();
@@ -48,7 +38,7 @@ supermesh_of(const Array2<double> &source_points, const Array2<Index> &source_ce
     throw std::invalid_argument("nodal values are needed for every corner of a cell");
   const auto source = region_mesh<d>(source_points, source_cells, source_regions);
   const auto target = region_mesh<d>(target_points, target_cells, target_regions);
-  Monitor monitor(interruptible(callback), std::numeric_limits<std::size_t>::max(),
+  Monitor monitor(progress_of(callback), std::numeric_limits<std::size_t>::max(),
                   std::numeric_limits<double>::infinity());
   Supermesh<d> made;
   {

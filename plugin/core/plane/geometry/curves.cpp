@@ -132,7 +132,7 @@ struct Chains {
     const double angle = turn_at(v);
     if (angle >= input.shape.sharp_turn() * std::numbers::pi / 180)
       return true;
-    if (input.shape.is_polyhedron || angle < straight_turn)
+    if (input.shape.is_polyhedron() || angle < straight_turn)
       return false;
     const bool straight[2] = {in_straight_run(v, 0), in_straight_run(v, 1)};
     if (straight[0] && straight[1])
@@ -293,8 +293,7 @@ Geometry make_geometry(const GeometryInput &input, const Projection *projection)
     curve.tag = link.tag;
     curve.left = link.left;
     curve.right = link.right;
-    curve.is_frozen = std::find(input.frozen_tags.begin(), input.frozen_tags.end(),
-                                link.tag) != input.frozen_tags.end();
+    curve.is_frozen = input.shape.is_frozen(link.tag);
     curve.vertices = {from};
     curve.is_loop = !geometry.is_corner[from];
     std::size_t k = chains.at[from][n].first;

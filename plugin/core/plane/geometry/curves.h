@@ -21,8 +21,7 @@ struct GeometryInput {
   std::span<const Index> cell_tags;
   std::span<const Facet<2>> facets;
   std::span<const Index> facet_tags;
-  std::span<const Index> corners;     ///< points that must stay
-  std::span<const Index> frozen_tags; ///< facets with these tags are kept as they are
+  std::span<const Index> corners; ///< points that must stay
   DomainShape shape;
 };
 

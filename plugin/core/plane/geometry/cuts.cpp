@@ -1,5 +1,7 @@
 #include "plane/geometry/cuts.h"
 
+#include "base/errors.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,5 +1,6 @@
 #include "plane/geometry/outline.h"
 
+#include "base/errors.h"
 #include "plane/geometry/cuts.h"
 #include "search/box_tree.h"
 

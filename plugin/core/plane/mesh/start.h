@@ -1,6 +1,7 @@
 #pragma once
 // From curves to a first valid triangulation of the domain.
 
+#include "base/errors.h"
 #include "mesh/triangulation.h"
 #include "plane/geometry/outline.h"
 
