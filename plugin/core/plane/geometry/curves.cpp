@@ -26,6 +26,10 @@ constexpr double tangent_turn_factor = 1.5;
 /// A turn of this fraction of the ridge angle is a corner when it is this many times as
 /// large as those beside it.
 constexpr double weak_fraction = 1. / 3, standing_out = 3;
+/// Bisections for the middle of an edge: to a billionth of it.
+constexpr int n_bisections = 30;
+/// Pieces of an edge between which its distance from the curve is looked at.
+constexpr double n_pieces = 4;
 
 double turn(const Vector<2> &u, const Vector<2> &v) {
   return std::abs(elementary::angle_of(cross(u, v), u.dot(v)));
@@ -323,7 +327,7 @@ Geometry make_geometry(const GeometryInput &input, const Projection *projection)
 double middle(const Curve &curve, double t0, double t1) {
   const Vector<2> a = curve.at(t0), b = curve.at(t1);
   double low = t0, high = t1;
-  for (int step = 0; step < 30; ++step) {
+  for (int step = 0; step < n_bisections; ++step) {
     const double t = .5 * (low + high);
     const Vector<2> x = curve.at(t);
     ((x - a).squaredNorm() < (x - b).squaredNorm() ? low : high) = t;
@@ -344,8 +348,8 @@ double relative_sagitta(const Curve &curve, double t0, double t1) {
     worst =
         std::max(worst, elementary::length(cross(chord, r) / length, past) / length);
   };
-  for (double k = 1; k < 4; ++k)
-    consider(t0 + (t1 - t0) * k / 4);
+  for (double k = 1; k < n_pieces; ++k)
+    consider(t0 + (t1 - t0) * k / n_pieces);
   // an edge over many points of the geometry is compared with all of them
   for (double t = std::floor(t0) + 1; t < t1; ++t)
     consider(t);

@@ -9,6 +9,9 @@ namespace {
 /// Pieces of a curve over which its metric length is taken by the trapezium-like rule
 /// of mean_length: short against the unit edge.
 constexpr double sample_length = .25;
+/// A piece is halved where its halves add up to another length, by this part of the
+/// above.
+constexpr double largest_error = .05;
 constexpr int max_sample_depth = 24;
 
 /// Where the piecewise linear function through (x, y) takes the value y for x = at.
@@ -45,7 +48,8 @@ struct Sampler {
     if (depth < max_sample_depth && table.total() < limit) {
       const Vertex<2> m = sample(t);
       const double halves = edge_length(a, m) + edge_length(m, b);
-      if (halves > sample_length || std::abs(halves - whole) > .05 * sample_length) {
+      if (halves > sample_length ||
+          std::abs(halves - whole) > largest_error * sample_length) {
         piece(t0, a, t, m, depth + 1);
         piece(t, m, t1, b, depth + 1);
         return;

@@ -171,8 +171,8 @@ bool retreat(Geometry &geometry, const Background<2> &background, Outline &outli
       outline.background.push_back(cell);
       outline.feature.push_back(1);
       const auto v = static_cast<Index>(outline.vertices.size()) - 1;
-      outline.edges[e] = {edge.curve, edge.t0, t, edge.v0, v};
-      outline.edges.push_back({edge.curve, t, edge.t1, v, edge.v1});
+      outline.edges[e] = edge.before(t, v);
+      outline.edges.push_back(edge.after(t, v));
       give_up(edge.ball);
       changed = true;
     } else {

@@ -20,6 +20,14 @@ struct CurveEdge {
   double t0, t1; ///< curve parameters of its ends
   Index v0, v1;
   Index ball = none; ///< the protecting ball that it crosses from corner to shell
+
+  /// What is left of it before and after a vertex v at t; in no ball.
+  [[nodiscard]] CurveEdge before(double t, Index v) const {
+    return {.curve = curve, .t0 = t0, .t1 = t, .v0 = v0, .v1 = v};
+  }
+  [[nodiscard]] CurveEdge after(double t, Index v) const {
+    return {.curve = curve, .t0 = t, .t1 = t1, .v0 = v, .v1 = v1};
+  }
 };
 
 /// Vertices and edges on the curves, plus the points that must stay.

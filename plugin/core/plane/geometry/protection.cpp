@@ -19,6 +19,7 @@ constexpr double unit_deviation = std::numbers::ln2 / 2;
 constexpr double least_rest = .5;
 /// Between radii that serve as well, the one nearer to 1.
 constexpr double preference = 1e-3;
+/// They leave nothing of an interval but round-off.
 constexpr int n_bisections = 60;
 
 /// A curve as seen from a corner at one of its ends.

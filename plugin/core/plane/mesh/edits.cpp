@@ -52,6 +52,14 @@ OnCurve curve_edges_at(const Workspace &w, Index v,
 
 } // namespace
 
+bool encroaches(const Triangulation<2> &mesh, const Vertex<2> &p, HalfFacet edge) {
+  if (mesh.constraint(edge) == none)
+    return false;
+  const auto [a, b] = mesh.facet(edge);
+  const Vector<2> u = mesh.vertex(a).x - p.x, v = mesh.vertex(b).x - p.x;
+  return product<2>(p.M, u).dot(v) < 0;
+}
+
 Index insert_in_cell(Triangulation<2> &mesh, Cavity &cavity, Index cell,
                      const Vertex<2> &vertex, Index background_cell) {
   const Simplex<2> s = mesh.simplex(cell);
@@ -115,8 +123,8 @@ Index split_edge(Workspace &w, HalfFacet edge) {
   }
   auto &table = w.on_curves.curve_edges;
   const auto first = static_cast<Index>(table.size());
-  table.push_back({whole.curve, whole.t0, t, whole.v0, v});
-  table.push_back({whole.curve, t, whole.t1, v, whole.v1});
+  table.push_back(whole.before(t, v));
+  table.push_back(whole.after(t, v));
   w.walls.add(first, record);
   w.walls.add(first + 1, record);
   w.walls.remove(record);
@@ -150,7 +158,7 @@ bool bound_collapse(Workspace &w, Collapse &collapse) {
     if (!w.walls.is_clear(w.curve(in), mesh.vertex(in.v0).x, in.v0, mesh.vertex(v).x, v,
                           mesh.vertex(out.v1).x, collapse.halves))
       return false;
-    collapse.merged = {in.curve, in.t0, out.t1, in.v0, out.v1};
+    collapse.merged = in.before(out.t1, out.v1);
     const Index far = collapse.target == in.v0 ? out.v1 : in.v0;
     for (HalfFacet h : collapse.star) {
       const auto [a, b] = mesh.facet(h);

@@ -5,6 +5,11 @@
 
 namespace anistar {
 
+/// Whether the edge is constrained and p lies inside its diametral ellipse, in the
+/// metric of p.
+[[nodiscard]] bool encroaches(const Triangulation<2> &mesh, const Vertex<2> &p,
+                              HalfFacet edge);
+
 /// Inserts an interior vertex into the cell that contains it. @returns the vertex, none
 /// when it lies too near to an edge. The new cells are cavity.star().
 [[nodiscard]] Index insert_in_cell(Triangulation<2> &mesh, Cavity &cavity, Index cell,

@@ -6,6 +6,7 @@
 namespace anistar {
 namespace {
 
+/// They leave nothing of an interval but round-off.
 constexpr int n_bisections = 60;
 
 } // namespace

@@ -9,7 +9,8 @@ constexpr double shortest_kept = .64, longest_kept = 1.5;
 /// Where the metric jumps, its interpolation may not last: no end may see much more.
 constexpr double longest_kept_at_end = 2;
 /// |ln l| up to here is free: a little inside the bounds of a unit edge.
-const double unit_excess = elementary::log(longest_unit) - .03;
+constexpr double margin = .03;
+const double unit_excess = elementary::log(longest_unit) - margin;
 /// Lengths up to here, and from its inverse on, are: most are, and need no logarithm.
 constexpr double surely_free = 1.37;
 

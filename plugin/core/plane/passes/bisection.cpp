@@ -14,7 +14,7 @@ constexpr int max_idle_rounds = 3;
 /// Cells from one whose longest edge is its neighbour's too.
 constexpr int longest_path = 64;
 /// What is repaired in between by edges near to unit length.
-constexpr double unit_floor = .5;
+constexpr QualityFloor unit_floor{.between_walls = .5, .elsewhere = .5};
 /// Not more than one cell of so many may be poor, of few cells not more than these.
 constexpr std::size_t cells_per_poor = 100, least_most_poor = 64;
 /// The square of an edge that is long beside the longest one.
@@ -140,8 +140,8 @@ std::size_t bisect(Workspace &w, const Run &run, QualityFloor floor) {
   Progress progress;
   std::size_t n_splits = 0;
   for (int round = 0; round < max_rounds && !poor.empty(); ++round) {
-    (void)repair(w, run, {{unit_floor, unit_floor}});
-    (void)repair(w, run, {floor, true});
+    (void)repair(w, run, {.floor = unit_floor});
+    (void)repair(w, run, {.floor = floor, .at_any_length = true});
     poor = poor_cells(w.mesh, floor, run.threads);
     if (progress.has_ended(w.mesh, poor))
       break;

@@ -10,6 +10,8 @@ namespace {
 constexpr double longest_after_collapse = 1.5;
 constexpr double worst_after_collapse = .2;
 constexpr int flip_cap = 60;
+/// Of the pass, when the splits begin.
+constexpr double progress_at_splits = .5;
 
 class LengthControl {
 public:
@@ -117,7 +119,9 @@ LengthCounts control_lengths(Workspace &w, const Run &run, const LengthBounds &b
       counts.collapses += control.collapse_short(v, bounds.shortest);
   std::vector<HalfFacet> edges = edges_of_length(w, run.threads, is_long);
   for (std::size_t k = 0;
-       k < edges.size() && run.monitor.keep_going(w.mesh.vertices.size(), .5); ++k)
+       k < edges.size() &&
+       run.monitor.keep_going(w.mesh.vertices.size(), progress_at_splits);
+       ++k)
     if (w.mesh.is_alive(edges[k].cell()) &&
         control.split_long(edges[k], bounds.longest)) {
       ++counts.splits;

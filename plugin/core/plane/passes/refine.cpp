@@ -24,13 +24,20 @@ constexpr double least_height = .5;
 /// constraint is refined at its centroid.
 constexpr double hidden_radius = 3 * largest_radius;
 constexpr int flip_cap = 200;
-/// Radii are sorted into buckets, four to a factor of two.
+/// Radii are sorted into buckets.
 constexpr std::size_t n_buckets = 64;
+constexpr double buckets_per_octave = 4;
 /// Blocks are refined side by side when there are so many vertices that are not on
-/// curves, and the target is still far.
+/// curves, and the target is still as far as this.
 constexpr std::size_t vertices_for_blocks = 2048;
+constexpr double worth_levels = 2 * largest_radius;
+/// The blocks of every other level lie along a curve that turns elsewhere, see
+/// hilbert_order.
+constexpr double shift_of_blocks = .25;
+/// Levels at the target itself, for what lay between the blocks of the first one.
+constexpr int levels_at_target = 2;
 /// A level has room for that many new vertices per vertex: four are expected.
-constexpr double most_growth = 8;
+constexpr double least_growth = .1, most_growth = 8;
 
 /// The mean of three metrics, whose density is their geometric mean.
 SymmetricTensor<2> mean_metric(const Vertex<2> &a, const Vertex<2> &b,
@@ -68,7 +75,8 @@ public:
   }
   /// No cell that waits has a larger radius.
   [[nodiscard]] double level() const {
-    return largest_radius * elementary::exp2(.25 * static_cast<double>(top_ + 1));
+    return largest_radius *
+           elementary::exp2(static_cast<double>(top_ + 1) / buckets_per_octave);
   }
   void clear() {
     for (std::vector<Entry> &bucket : buckets_)
@@ -108,7 +116,7 @@ private:
     const double radius = circle_of(cell).radius;
     if (!(radius > target_)) // also when round-off has made it NaN
       return;
-    const double level = 4 * elementary::log2(radius / largest_radius);
+    const double level = buckets_per_octave * elementary::log2(radius / largest_radius);
     const std::size_t b = std::min(n_buckets - 1, static_cast<std::size_t>(level));
     buckets_[b].push_back({cell, w_.mesh.at(cell)});
     top_ = std::max(top_, b);
@@ -202,7 +210,7 @@ private:
     const Vertex<2> vertex = w_.background.vertex(x, hint);
     for (std::size_t i = 0; i < 3; ++i) {
       const HalfFacet edge(cell, i);
-      if (!encroaches(vertex, edge))
+      if (!encroaches(w_.mesh, vertex, edge))
         continue;
       if (!range_.is_unbounded())
         return Offer::put_off; // curves are no block's
@@ -231,15 +239,6 @@ private:
   void again(Index cell, const Cell<2> &before) {
     if (w_.mesh.at(cell) == before)
       push(cell);
-  }
-
-  /// x lies inside the diametral ellipse, in its own metric, of a constrained edge.
-  [[nodiscard]] bool encroaches(const Vertex<2> &p, HalfFacet edge) const {
-    if (w_.mesh.constraint(edge) == none)
-      return false;
-    const auto [a, b] = w_.mesh.facet(edge);
-    const Vector<2> u = w_.mesh.vertex(a).x - p.x, v = w_.mesh.vertex(b).x - p.x;
-    return product<2>(p.M, u).dot(v) < 0;
   }
 
   /// Distance of p from the line of an edge in its own metric.
@@ -317,8 +316,8 @@ bool refine_blocks(Workspace &w, const Run &run, double radius, RefineCounts &co
     return [&](std::size_t k) {
       const auto n = static_cast<double>(blocks[k].last - blocks[k].first);
       const double area = metric_area(mesh, cells[k], blocks[k]);
-      n_new[k] = static_cast<std::size_t>(
-          std::clamp(expected_vertices(area, radius) - n, .1 * n, most_growth * n));
+      n_new[k] = static_cast<std::size_t>(std::clamp(
+          expected_vertices(area, radius) - n, least_growth * n, most_growth * n));
     };
   });
   if (!run.monitor.has_room(mesh.vertices.size() + std::accumulate(n_new.begin(),
@@ -371,13 +370,13 @@ RefineCounts refine(Workspace &w, const Run &run) {
       is_left = refinement.step();
   };
   run_until(enough);
-  if (is_left && refinement.level() > 2 * largest_radius) {
+  if (is_left && refinement.level() > worth_levels) {
     double radius = refinement.level();
     bool going = true;
-    for (int stage = 0, last = 0; going && last < 2; ++stage) {
-      renumber(w, run.threads, stage % 2 == 0 ? .25 : 0);
+    for (int stage = 0, at_target = 0; going && at_target < levels_at_target; ++stage) {
+      renumber(w, run.threads, stage % 2 == 0 ? shift_of_blocks : 0);
       radius = std::max(largest_radius, .5 * radius);
-      last += radius == largest_radius;
+      at_target += radius == largest_radius;
       going = refine_blocks(w, run, radius, counts);
     }
     renumber(w, run.threads);

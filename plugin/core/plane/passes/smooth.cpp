@@ -13,6 +13,8 @@ namespace {
 
 /// Longest move in the vertex's own metric.
 constexpr double longest_move = .3;
+/// And the longest one on a curve, as a part of the parameters up to the next vertex.
+constexpr double longest_slide = .4;
 constexpr int max_halvings = 4;
 constexpr int flip_cap = 40;
 
@@ -79,7 +81,8 @@ private:
     const double shift = .5 * (after - before);
     double dt =
         shift > 0 ? shift / after * on.room_after() : shift / before * on.room_before();
-    dt = std::clamp(dt, -.4 * on.room_before(), .4 * on.room_after());
+    dt = std::clamp(dt, -longest_slide * on.room_before(),
+                    longest_slide * on.room_after());
     for (int halving = 0; halving < max_halvings && dt != 0; ++halving, dt *= .5)
       if (on.may_slide(dt) && trial_.may_move_to(on.at(dt))) {
         trial_.put(trial_.at(on.at(dt)));

@@ -11,14 +11,9 @@ constexpr double separation = .4;
 } // namespace
 
 HalfFacet Insertion::encroached(const Vertex<2> &p, Index cell) const {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const HalfFacet edge(cell, i);
-    if (mesh_.constraint(edge) == none)
-      continue;
-    const auto [a, b] = mesh_.facet(edge);
-    if (product<2>(p.M, mesh_.vertex(a).x - p.x).dot(mesh_.vertex(b).x - p.x) < 0)
+  for (std::size_t i = 0; i < 3; ++i)
+    if (const HalfFacet edge(cell, i); encroaches(mesh_, p, edge))
       return edge;
-  }
   return {};
 }
 
