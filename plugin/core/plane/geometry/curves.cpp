@@ -173,21 +173,41 @@ void Curve::fit(std::vector<Vector<2>> points, const Projection *projection) {
   points_ = std::move(points);
   projection_ = projection;
   const std::size_t n = n_segments();
-
   std::vector<Vector<2>> chord(n);
   for (std::size_t k = 0; k < n; ++k)
     chord[k] = points_[k + 1] - points_[k];
-  is_straight_.assign(n, n == 1);
   is_chord_.assign(n, false);
-  const auto joint = [&](std::size_t k) { return k > 0 || is_loop; };
-  const auto before = [&](std::size_t k) { return k > 0 ? k - 1 : n - 1; };
-  for (std::size_t k = 0; k < n; ++k)
-    if (joint(k) && turn(chord[before(k)], chord[k]) < straight_turn)
-      is_straight_[k] = is_straight_[before(k)] = true;
+  mark_straight_runs(chord);
+  const std::vector<Vector<2>> tangent = tangents(chord);
+  // the magnitude with which a cubic follows a circle to sixth order
+  const auto hermite = [](const Vector<2> &t, const Vector<2> &c) -> Vector<2> {
+    return t * (2 * c.norm() / (1 + t.dot(c) / c.norm()));
+  };
+  start_.resize(n);
+  end_.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vector<2> direction = chord[k].normalized();
+    if (std::min(tangent[k].dot(direction), tangent[k + 1].dot(direction)) <
+        steepest_tangent)
+      is_straight_[k] = true;
+    start_[k] = hermite(tangent[k], chord[k]);
+    end_[k] = hermite(tangent[k + 1], chord[k]);
+  }
+}
 
+void Curve::mark_straight_runs(const std::vector<Vector<2>> &chord) {
+  const std::size_t n = n_segments();
+  is_straight_.assign(n, n == 1);
+  for (std::size_t k = 0; k < n; ++k)
+    if (is_joint(k) && turn(chord[before(k)], chord[k]) < straight_turn)
+      is_straight_[k] = is_straight_[before(k)] = true;
+}
+
+std::vector<Vector<2>> Curve::tangents(const std::vector<Vector<2>> &chord) const {
+  const std::size_t n = n_segments();
   std::vector<Vector<2>> tangent(n + 1);
   for (std::size_t k = 0; k < n; ++k)
-    if (joint(k)) {
+    if (is_joint(k)) {
       const std::size_t b = before(k);
       if (is_straight_[b])
         tangent[k] = chord[b].normalized();
@@ -203,20 +223,7 @@ void Curve::fit(std::vector<Vector<2>> points, const Projection *projection) {
     tangent[0] = n > 1 ? reflected(tangent[1], chord[0]) : only;
     tangent[n] = n > 1 ? reflected(tangent[n - 1], chord[n - 1]) : only;
   }
-  // the magnitude with which a cubic follows a circle to sixth order
-  const auto hermite = [](const Vector<2> &t, const Vector<2> &c) -> Vector<2> {
-    return t * (2 * c.norm() / (1 + t.dot(c) / c.norm()));
-  };
-  start_.resize(n);
-  end_.resize(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vector<2> direction = chord[k].normalized();
-    if (std::min(tangent[k].dot(direction), tangent[k + 1].dot(direction)) <
-        steepest_tangent)
-      is_straight_[k] = true;
-    start_[k] = hermite(tangent[k], chord[k]);
-    end_[k] = hermite(tangent[k + 1], chord[k]);
-  }
+  return tangent;
 }
 
 Curve::OnSegment Curve::on_segment(double t) const {
@@ -276,6 +283,52 @@ std::vector<FreePoint> free_points(const GeometryInput &input, const Chains &cha
   return found;
 }
 
+/// The facets on no curve yet are followed from corner to corner, or around a loop.
+class Tracer {
+public:
+  Tracer(const GeometryInput &input, const Chains &chains,
+         const std::vector<bool> &is_corner)
+      : input_(input), chains_(chains), is_corner_(is_corner),
+        is_done_(chains.links.size(), false) {}
+
+  /// Whether the facet along link n of a vertex is on a curve that was traced.
+  [[nodiscard]] bool is_done(Index from, std::size_t n) const {
+    return is_done_[chains_.at[from][n].first];
+  }
+  /// The curve that leaves a vertex along link n.
+  [[nodiscard]] Curve trace(Index from, std::size_t n, const Projection *projection) {
+    Curve curve;
+    Link link = chains_.outgoing(from, n);
+    curve.tag = link.tag;
+    curve.left = link.left;
+    curve.right = link.right;
+    curve.is_frozen = input_.shape.is_frozen(link.tag);
+    curve.vertices = {from};
+    curve.is_loop = !is_corner_[from];
+    std::size_t k = chains_.at[from][n].first;
+    for (;;) {
+      is_done_[k] = true;
+      curve.vertices.push_back(link.to);
+      if (is_corner_[link.to] || link.to == from)
+        break;
+      const std::size_t other = chains_.at[link.to][0].first == k ? 1 : 0;
+      k = chains_.at[link.to][other].first;
+      link = chains_.outgoing(link.to, other);
+    }
+    std::vector<Vector<2>> points;
+    for (Index v : curve.vertices)
+      points.push_back(chains_.point(v));
+    curve.fit(std::move(points), projection);
+    return curve;
+  }
+
+private:
+  const GeometryInput &input_;
+  const Chains &chains_;
+  const std::vector<bool> &is_corner_;
+  std::vector<bool> is_done_;
+};
+
 } // namespace
 
 Geometry make_geometry(const GeometryInput &input, const Projection *projection) {
@@ -289,38 +342,13 @@ Geometry make_geometry(const GeometryInput &input, const Projection *projection)
     if (chains.is_corner(static_cast<Index>(v)))
       geometry.is_corner[v] = true;
   geometry.free_points = free_points(input, chains);
-
-  std::vector<bool> done(chains.links.size(), false);
-  const auto trace = [&](Index from, std::size_t n) {
-    Curve curve;
-    Link link = chains.outgoing(from, n);
-    curve.tag = link.tag;
-    curve.left = link.left;
-    curve.right = link.right;
-    curve.is_frozen = input.shape.is_frozen(link.tag);
-    curve.vertices = {from};
-    curve.is_loop = !geometry.is_corner[from];
-    std::size_t k = chains.at[from][n].first;
-    for (;;) {
-      done[k] = true;
-      curve.vertices.push_back(link.to);
-      if (geometry.is_corner[link.to] || link.to == from)
-        break;
-      const std::size_t other = chains.at[link.to][0].first == k ? 1 : 0;
-      k = chains.at[link.to][other].first;
-      link = chains.outgoing(link.to, other);
-    }
-    std::vector<Vector<2>> points;
-    for (Index v : curve.vertices)
-      points.push_back(chains.point(v));
-    curve.fit(std::move(points), projection);
-    geometry.curves.push_back(std::move(curve));
-  };
+  Tracer tracer(input, chains, geometry.is_corner);
   for (bool at_corner : {true, false}) // what is left after the corners is closed
     for (std::size_t v = 0; v < input.points.size(); ++v)
       for (std::size_t n = 0; n < chains.at[v].size(); ++n)
-        if (geometry.is_corner[v] == at_corner && !done[chains.at[v][n].first])
-          trace(static_cast<Index>(v), n);
+        if (const auto from = static_cast<Index>(v);
+            geometry.is_corner[v] == at_corner && !tracer.is_done(from, n))
+          geometry.curves.push_back(tracer.trace(from, n, projection));
   return geometry;
 }
 

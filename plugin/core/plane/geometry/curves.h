@@ -69,6 +69,14 @@ private:
   const Projection *projection_ = nullptr;
 
   [[nodiscard]] OnSegment on_segment(double t) const;
+  /// Whether another segment ends where segment k begins, and which.
+  [[nodiscard]] bool is_joint(std::size_t k) const { return k > 0 || is_loop; }
+  [[nodiscard]] std::size_t before(std::size_t k) const {
+    return k > 0 ? k - 1 : n_segments() - 1;
+  }
+  void mark_straight_runs(const std::vector<Vector<2>> &chord);
+  [[nodiscard]] std::vector<Vector<2>>
+  tangents(const std::vector<Vector<2>> &chord) const;
 };
 
 /// A point that must stay and is on no curve.

@@ -67,6 +67,61 @@ bool Cavity::keeps_vertices() const {
   });
 }
 
+Cavity::Outer Cavity::outer_of(HalfFacet h) const {
+  return {mesh_.at(h.cell()), h.facet(), mesh_.opposite(h), mesh_.constraint(h),
+          mesh_.region[h.cell()]};
+}
+
+void Cavity::fill(Index apex, std::span<const SpokeConstraint> spokes) {
+  outers_.clear();
+  walls_.clear();
+  for (HalfFacet h : facets_)
+    outers_.push_back(outer_of(h));
+  for (HalfFacet h : at_apex_)
+    walls_.push_back(outer_of(h));
+  // the new cells take the places of the old ones: a swap touches nothing else
+  for (std::size_t k = cells_.size(); k-- > outers_.size();)
+    mesh_.free_cell(cells_[k]);
+  make_cells(apex);
+  join_cells(spokes);
+  join_walls(apex);
+}
+
+void Cavity::make_cells(Index apex) {
+  star_.clear();
+  for (std::size_t k = 0; k < outers_.size(); ++k) {
+    const Outer &outer = outers_[k];
+    const Index c = k < cells_.size() ? cells_[k] : mesh_.add_cell(slots_);
+    mesh_.at(c) = outer.cell;
+    mesh_.at(c)[outer.facet] = apex;
+    mesh_.region[c] = outer.region;
+    mesh_.neighbours[c] = {};
+    mesh_.constraints[c].fill(none);
+    const HalfFacet base(c, outer.facet);
+    mesh_.join(base, outer.beyond);
+    mesh_.set_constraint(base, outer.constraint);
+    star_.push_back(base);
+    for (Index v : mesh_.at(c))
+      mesh_.vertex_cell[v] = c;
+  }
+}
+
+void Cavity::join_cells(std::span<const SpokeConstraint> spokes) {
+  ports_.clear();
+  for (HalfFacet base : star_)
+    for (std::size_t j = 0; j < 3; ++j)
+      if (j != base.facet()) {
+        const HalfFacet spoke(base.cell(), j);
+        const Index end = mesh_.at(base.cell())[third(base.facet(), j)];
+        Index constraint = none;
+        for (const SpokeConstraint &given : spokes)
+          if (given.end == end)
+            constraint = given.constraint;
+        mesh_.set_constraint(spoke, constraint);
+        connect({end, spoke, constraint});
+      }
+}
+
 /// Joins an edge at the apex with its other side if that has come already. A cavity has
 /// a dozen facets: a linear search is the fastest there.
 void Cavity::connect(const Port &port) {
@@ -84,50 +139,8 @@ void Cavity::connect(const Port &port) {
   ports_.push_back(port);
 }
 
-void Cavity::fill(Index apex, std::span<const SpokeConstraint> spokes) {
-  const auto outer_of = [&](HalfFacet h) {
-    return Outer{mesh_.at(h.cell()), h.facet(), mesh_.opposite(h), mesh_.constraint(h),
-                 mesh_.region[h.cell()]};
-  };
-  outers_.clear();
-  walls_.clear();
-  for (HalfFacet h : facets_)
-    outers_.push_back(outer_of(h));
-  for (HalfFacet h : at_apex_)
-    walls_.push_back(outer_of(h));
-  // the new cells take the places of the old ones: a swap touches nothing else
-  for (std::size_t k = cells_.size(); k-- > outers_.size();)
-    mesh_.free_cell(cells_[k]);
-
-  star_.clear();
-  ports_.clear();
-  for (std::size_t k = 0; k < outers_.size(); ++k) {
-    const Outer &outer = outers_[k];
-    const Index c = k < cells_.size() ? cells_[k] : mesh_.add_cell(slots_);
-    mesh_.at(c) = outer.cell;
-    mesh_.at(c)[outer.facet] = apex;
-    mesh_.region[c] = outer.region;
-    mesh_.neighbours[c] = {};
-    mesh_.constraints[c].fill(none);
-    const HalfFacet base(c, outer.facet);
-    mesh_.join(base, outer.beyond);
-    mesh_.set_constraint(base, outer.constraint);
-    star_.push_back(base);
-    for (Index v : mesh_.at(c))
-      mesh_.vertex_cell[v] = c;
-  }
-  for (HalfFacet base : star_)
-    for (std::size_t j = 0; j < 3; ++j)
-      if (j != base.facet()) {
-        const HalfFacet spoke(base.cell(), j);
-        const Index end = mesh_.at(base.cell())[third(base.facet(), j)];
-        Index constraint = none;
-        for (const SpokeConstraint &given : spokes)
-          if (given.end == end)
-            constraint = given.constraint;
-        mesh_.set_constraint(spoke, constraint);
-        connect({end, spoke, constraint});
-      }
+/// Joins what is left with what lay beyond the edges at the apex.
+void Cavity::join_walls(Index apex) {
   for (const Outer &wall : walls_) {
     std::size_t a = 0;
     while (wall.cell[a] != apex)

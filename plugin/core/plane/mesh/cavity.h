@@ -80,7 +80,11 @@ private:
   std::vector<Outer> outers_, walls_;
   std::vector<Port> ports_;
 
+  [[nodiscard]] Outer outer_of(HalfFacet h) const;
+  void make_cells(Index apex);
+  void join_cells(std::span<const SpokeConstraint> spokes);
   void connect(const Port &port);
+  void join_walls(Index apex);
 };
 
 } // namespace anistar

@@ -50,6 +50,95 @@ OnCurve curve_edges_at(const Workspace &w, Index v,
   return at;
 }
 
+/// Bounds w.cavity for a vertex at x, on an edge. @returns false when not all of it can
+/// be seen from there.
+bool bound_split(Workspace &w, HalfFacet edge, const Vector<2> &x) {
+  const HalfFacet other = w.mesh.opposite(edge);
+  const HalfFacet boundary[1] = {edge};
+  const std::span<const HalfFacet> skipped(boundary, other.exists() ? 0 : 1);
+  w.cavity.clear();
+  w.cavity.add(edge.cell());
+  if (other.exists())
+    w.cavity.add(other.cell());
+  return grow_to_see(w.mesh, w.cavity, none, skipped, x);
+}
+
+/// Adds a vertex at x, near an edge.
+Index add_near(Workspace &w, HalfFacet edge, const Vector<2> &x, Index feature) {
+  Index cell = w.mesh.background_cell[w.mesh.facet(edge)[0]];
+  const Vertex<2> vertex = w.background.vertex(x, cell);
+  return w.mesh.add_vertex(vertex, feature, cell);
+}
+
+Index split_inside(Workspace &w, HalfFacet edge) {
+  const auto [a, b] = w.mesh.facet(edge);
+  const Vector<2> x = .5 * (w.mesh.vertex(a).x + w.mesh.vertex(b).x);
+  if (!bound_split(w, edge, x))
+    return none;
+  const Index v = add_near(w, edge, x, Triangulation<2>::interior);
+  w.cavity.fill(v);
+  return v;
+}
+
+Index split_on_curve(Workspace &w, HalfFacet edge) {
+  const CurveEdge whole = w.curve_edge(edge);
+  const Curve &curve = w.curve(whole);
+  if (curve.is_frozen || whole.ball != none)
+    return none;
+  const double t = middle(curve, whole.t0, whole.t1);
+  const Vector<2> x = curve.at(t);
+  const Index record = w.mesh.constraint(edge);
+  if (!w.walls.is_clear(curve, w.mesh.vertex(whole.v0).x, whole.v0,
+                        w.mesh.vertex(whole.v1).x, whole.v1, x, {&record, 1}) ||
+      !bound_split(w, edge, x))
+    return none;
+  const Index v = add_near(w, edge, x, 1);
+  auto &table = w.on_curves.curve_edges;
+  const auto first = static_cast<Index>(table.size());
+  table.push_back(whole.before(t, v));
+  table.push_back(whole.after(t, v));
+  w.walls.add(first, record);
+  w.walls.add(first + 1, record);
+  w.walls.remove(record);
+  const SpokeConstraint spokes[2] = {{whole.v0, first}, {whole.v1, first + 1}};
+  w.cavity.fill(v, spokes);
+  return v;
+}
+
+/// Fills in what the removal of a vertex of a curve does to it. @returns false when
+/// that is not valid.
+bool merge_curve_edges(const Workspace &w, Collapse &collapse) {
+  const Triangulation<2> &mesh = w.mesh;
+  const Index v = collapse.vertex;
+  const OnCurve at = curve_edges_at(w, v, collapse.star);
+  if (!at.into.exists() || !at.out_of.exists())
+    return false;
+  const CurveEdge in = w.curve_edge(at.into), out = w.curve_edge(at.out_of);
+  if (collapse.target != in.v0 && collapse.target != out.v1)
+    return false;
+  if (in.ball != none || out.ball != none)
+    return false;
+  if (in.v0 == out.v1 || w.curve(in).is_frozen ||
+      relative_sagitta(w.curve(in), in.t0, out.t1) > w.hausdorff)
+    return false;
+  collapse.halves = {mesh.constraint(at.into), mesh.constraint(at.out_of)};
+  if (!w.walls.is_clear(w.curve(in), mesh.vertex(in.v0).x, in.v0, mesh.vertex(v).x, v,
+                        mesh.vertex(out.v1).x, collapse.halves))
+    return false;
+  collapse.merged = in.before(out.t1, out.v1);
+  for (HalfFacet h : collapse.star) {
+    const auto [a, b] = mesh.facet(h);
+    if (mesh.constraint(h) != none && std::minmax(a, b) == std::minmax(in.v0, out.v1))
+      return false; // another curve runs there
+  }
+  const Index far = collapse.target == in.v0 ? out.v1 : in.v0;
+  collapse.spokes.push_back({far, none});
+  for (HalfFacet edge : {at.into, at.out_of})
+    if (!mesh.opposite(edge).exists())
+      collapse.skipped.push_back(edge);
+  return true;
+}
+
 } // namespace
 
 bool encroaches(const Triangulation<2> &mesh, const Vertex<2> &p, HalfFacet edge) {
@@ -85,91 +174,20 @@ Index insert_in_cell(Triangulation<2> &mesh, Cavity &cavity, Index cell,
 }
 
 Index split_edge(Workspace &w, HalfFacet edge) {
-  Triangulation<2> &mesh = w.mesh;
-  const auto [a, b] = mesh.facet(edge);
-  const HalfFacet other = mesh.opposite(edge);
-  const bool is_constrained = mesh.constraint(edge) != none;
-  CurveEdge whole{};
-  double t = 0;
-  Vector<2> x = .5 * (mesh.vertex(a).x + mesh.vertex(b).x);
-  if (is_constrained) {
-    whole = w.curve_edge(edge);
-    const Curve &curve = w.curve(whole);
-    if (curve.is_frozen || whole.ball != none)
-      return none;
-    t = middle(curve, whole.t0, whole.t1);
-    x = curve.at(t);
-  }
-  const HalfFacet boundary[1] = {edge};
-  const std::span<const HalfFacet> skipped(boundary, other.exists() ? 0 : 1);
-  w.cavity.clear();
-  w.cavity.add(edge.cell());
-  if (other.exists())
-    w.cavity.add(other.cell());
-  const Index record = mesh.constraint(edge);
-  if (is_constrained &&
-      !w.walls.is_clear(w.curve(whole), mesh.vertex(whole.v0).x, whole.v0,
-                        mesh.vertex(whole.v1).x, whole.v1, x, {&record, 1}))
-    return none;
-  if (!grow_to_see(mesh, w.cavity, none, skipped, x))
-    return none;
-  Index cell = mesh.background_cell[a];
-  const Vertex<2> vertex = w.background.vertex(x, cell);
-  const Index feature = is_constrained ? 1 : Triangulation<2>::interior;
-  const Index v = mesh.add_vertex(vertex, feature, cell);
-  if (!is_constrained) {
-    w.cavity.fill(v);
-    return v;
-  }
-  auto &table = w.on_curves.curve_edges;
-  const auto first = static_cast<Index>(table.size());
-  table.push_back(whole.before(t, v));
-  table.push_back(whole.after(t, v));
-  w.walls.add(first, record);
-  w.walls.add(first + 1, record);
-  w.walls.remove(record);
-  const SpokeConstraint spokes[2] = {{whole.v0, first}, {whole.v1, first + 1}};
-  w.cavity.fill(v, spokes);
-  return v;
+  return w.mesh.constraint(edge) != none ? split_on_curve(w, edge)
+                                         : split_inside(w, edge);
 }
 
 bool bound_collapse(Workspace &w, Collapse &collapse) {
   Triangulation<2> &mesh = w.mesh;
-  const Index v = collapse.vertex;
-  const Index dimension = mesh.feature[v];
+  const Index dimension = mesh.feature[collapse.vertex];
   if (dimension == Triangulation<2>::corner)
     return false;
   collapse.skipped.clear();
   collapse.spokes.clear();
-  star_of(mesh, v, collapse.star);
-  if (dimension == 1) {
-    const OnCurve at = curve_edges_at(w, v, collapse.star);
-    if (!at.into.exists() || !at.out_of.exists())
-      return false;
-    const CurveEdge in = w.curve_edge(at.into), out = w.curve_edge(at.out_of);
-    if (collapse.target != in.v0 && collapse.target != out.v1)
-      return false;
-    if (in.ball != none || out.ball != none)
-      return false;
-    if (in.v0 == out.v1 || w.curve(in).is_frozen ||
-        relative_sagitta(w.curve(in), in.t0, out.t1) > w.hausdorff)
-      return false;
-    collapse.halves = {mesh.constraint(at.into), mesh.constraint(at.out_of)};
-    if (!w.walls.is_clear(w.curve(in), mesh.vertex(in.v0).x, in.v0, mesh.vertex(v).x, v,
-                          mesh.vertex(out.v1).x, collapse.halves))
-      return false;
-    collapse.merged = in.before(out.t1, out.v1);
-    const Index far = collapse.target == in.v0 ? out.v1 : in.v0;
-    for (HalfFacet h : collapse.star) {
-      const auto [a, b] = mesh.facet(h);
-      if (mesh.constraint(h) != none && std::minmax(a, b) == std::minmax(in.v0, out.v1))
-        return false; // another curve runs there
-    }
-    collapse.spokes.push_back({far, none});
-    for (HalfFacet edge : {at.into, at.out_of})
-      if (!mesh.opposite(edge).exists())
-        collapse.skipped.push_back(edge);
-  }
+  star_of(mesh, collapse.vertex, collapse.star);
+  if (dimension == 1 && !merge_curve_edges(w, collapse))
+    return false;
   w.cavity.clear();
   for (HalfFacet h : collapse.star)
     w.cavity.add(h.cell());

@@ -303,23 +303,32 @@ double metric_area(const Triangulation<2> &mesh, const CellRange &cells,
   return sum;
 }
 
+/// Room for new vertices in each block, by its area in the metric.
+std::vector<std::size_t> expected_growth(const Workspace &w, const Run &run,
+                                         const Blocks &blocks,
+                                         const std::vector<CellRange> &cells,
+                                         double radius) {
+  std::vector<std::size_t> n_new(blocks.size());
+  parallel_items(blocks.size(), run.threads, [&] {
+    return [&](std::size_t k) {
+      const auto n = static_cast<double>(blocks[k].last - blocks[k].first);
+      const double area = metric_area(w.mesh, cells[k], blocks[k]);
+      n_new[k] = static_cast<std::size_t>(std::clamp(
+          expected_vertices(area, radius) - n, least_growth * n, most_growth * n));
+    };
+  });
+  return n_new;
+}
+
 /// One level: blocks side by side. @returns false when the monitor has no room for it
 /// or stopped it.
 bool refine_blocks(Workspace &w, const Run &run, double radius, RefineCounts &counts) {
   Triangulation<2> &mesh = w.mesh;
   const Blocks blocks(mesh.vertices.size());
   std::vector<CellRange> cells;
-  std::vector<std::size_t> n_new(blocks.size());
   for (std::size_t k = 0; k < blocks.size(); ++k)
     cells.push_back(cells_of(mesh, blocks[k]));
-  parallel_items(blocks.size(), run.threads, [&] {
-    return [&](std::size_t k) {
-      const auto n = static_cast<double>(blocks[k].last - blocks[k].first);
-      const double area = metric_area(mesh, cells[k], blocks[k]);
-      n_new[k] = static_cast<std::size_t>(std::clamp(
-          expected_vertices(area, radius) - n, least_growth * n, most_growth * n));
-    };
-  });
+  const std::vector<std::size_t> n_new = expected_growth(w, run, blocks, cells, radius);
   if (!run.monitor.has_room(mesh.vertices.size() + std::accumulate(n_new.begin(),
                                                                    n_new.end(),
                                                                    std::size_t{0})))
