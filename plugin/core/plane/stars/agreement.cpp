@@ -11,6 +11,9 @@ namespace {
 constexpr double plateau_fraction = .002;
 constexpr int always_few = 10;
 constexpr int max_plateau_rounds = 60;
+constexpr double edges_per_cell = 1.5;
+/// Now and then the neighbours of the vertices are moved as well.
+constexpr int rounds_between_rings = 3;
 constexpr int max_polish_sweeps = 4;
 
 /// Vertices to visit, each once, in the order in which they came.
@@ -138,15 +141,15 @@ private:
   /// Random moves that do not raise the count, to leave local minima.
   bool walk_on_plateau() {
     // four vertices are listed for an edge
-    const double few =
-        4 * std::max(static_cast<double>(always_few),
-                     plateau_fraction * 1.5 * static_cast<double>(mesh_.n_cells()));
+    const double few = 4 * std::max(static_cast<double>(always_few),
+                                    plateau_fraction * edges_per_cell *
+                                        static_cast<double>(mesh_.n_cells()));
     bool going = true;
     for (int round = 0; going && round < max_plateau_rounds; ++round) {
       if (work_.size() == 0 || static_cast<double>(work_.size()) > few)
         break;
       std::vector<Index> vertices = work_.take();
-      if (round % 3 == 2)
+      if (round % rounds_between_rings == rounds_between_rings - 1)
         vertices = with_rings(vertices);
       going = visit(vertices, double(round) / max_plateau_rounds,
                     [round](Relocator &relocator, Index v, const VertexRange &range) {

@@ -8,12 +8,15 @@ namespace anistar {
 namespace {
 
 constexpr int n_candidates = 20;
+/// After so many the first place where all metrics agree is taken.
+constexpr int enough_candidates = 7;
 /// Candidates lie within this metric distance; the radius grows from pass to pass.
 constexpr double first_radius = .12, last_radius = .3;
 constexpr int flip_cap = 20;
 constexpr int n_plateau_candidates = 6;
 constexpr double plateau_radius = .2;
-constexpr int n_polish_candidates = 10;
+/// The first candidates of polishing are a pliant step, twice and four times as much.
+constexpr int n_polish_candidates = 10, n_pliant_candidates = 3;
 /// A polishing move must lower the excess by this much.
 constexpr double least_gain = 1e-3;
 
@@ -85,7 +88,7 @@ bool Relocator::move_freely(Index v, double radius, CounterRandom &random) {
       continue;
     best = place;
     best_score = found;
-    if (found.disagreeing == 0 && k > 6)
+    if (found.disagreeing == 0 && k >= enough_candidates)
       break;
   }
   if (best_score.disagreeing >= before.disagreeing)
@@ -188,8 +191,9 @@ bool Relocator::polish(Index v, int sweep, const VertexRange &range) {
   Place best = from;
   double best_excess = before.excess - least_gain;
   for (int k = 0; k < n_polish_candidates; ++k) {
-    const Vector<2> step =
-        k < 3 ? Vector<2>((1 << k) * pliant) : ellipse.step(plateau_radius, random);
+    const Vector<2> step = k < n_pliant_candidates
+                               ? Vector<2>((1 << k) * pliant)
+                               : ellipse.step(plateau_radius, random);
     const Vector<2> x = x0 + step;
     if (!trial_.may_move_to(x))
       continue;
