@@ -5,10 +5,6 @@
 #include "plane/geometry/outline.h"
 #include "plane/mesh/start.h"
 #include "plane/passes/bisection.h"
-#include "plane/passes/lengths.h"
-#include "plane/passes/refine.h"
-#include "plane/passes/repair.h"
-#include "plane/passes/smooth.h"
 #include "plane/stars/agreement.h"
 #include "plane/stars/consistency.h"
 #include "plane/stars/star_mending.h"
@@ -18,19 +14,6 @@
 
 namespace anistar {
 namespace {
-
-/// The schedule of phase 3, found by measurement: length control in between sweeps of
-/// smoothing, first wide, then near the bounds of a unit edge; ODT at the end evens
-/// the shapes out.
-struct Round {
-  int pliant_sweeps, odt_sweeps;
-  double shortest, longest; ///< lengths to control after the sweeps; 0: none
-};
-constexpr Round schedule[] = {{3, 0, .68, 1.45}, {3, 0, .70, 1.42}, {3, 2, 0, 0}};
-
-/// Outliers of the last sweeps: edges beyond these, cells below this quality.
-constexpr double shortest_outlier = .5, longest_outlier = 1.55;
-constexpr double repair_floor = .5;
 
 /// Cells below this are split where their edges, near to unit length as they are, make
 /// them no better: around a corner that asks for a size far from that of its
@@ -78,54 +61,41 @@ Projection timed(const Projection &projection, Monitor &monitor) {
   };
 }
 
+/// A first mesh.
 struct Start {
   MeshOnCurves mesh;
-  std::size_t n_sharp_corners = 0;
-  bool has_unit_curves = true;
+  std::size_t protected_corners = 0, unprotected_corners = 0; ///< sharp ones
+  bool has_unit_curves = false;
 };
 
-/// A first mesh, on curves that are cut to unit edges or, where a budget does not allow
-/// that, at points of the geometry.
+/// @throws BudgetSpent
+Start start_on_unit_edges(Geometry &geometry, const Background<2> &background,
+                          const Run &run, Stopwatch &watch) {
+  Outline outline = make_outline(geometry, background, run);
+  const std::size_t n_sharp = outline.n_balls + outline.n_unprotected;
+  watch.phase("size");
+  MeshOnCurves mesh = triangulate(geometry, background, std::move(outline),
+                                  [&] { run.monitor.insist(0); });
+  const std::size_t n_protected = count_balls(mesh.curve_edges);
+  return {.mesh = std::move(mesh),
+          .protected_corners = n_protected,
+          .unprotected_corners = n_sharp - n_protected,
+          .has_unit_curves = true};
+}
+
+/// On curves that are cut to unit edges or, where a budget does not allow that, at
+/// points of the geometry. With the curves the phase ends.
 Start make_start(Geometry &geometry, const Background<2> &background, const Run &run,
                  Stopwatch &watch) {
   try {
-    Outline outline = make_outline(geometry, background, run);
-    const std::size_t n_sharp = outline.n_balls + outline.n_unprotected;
-    watch.phase("size");
-    return {triangulate(geometry, background, std::move(outline),
-                        [&] { run.monitor.insist(0); }),
-            n_sharp, true};
+    return start_on_unit_edges(geometry, background, run, watch);
   } catch (const BudgetSpent &) {
     watch.phase("size");
     // the user may still interrupt this; a budget has nothing less to fall back upon
-    return {triangulate(geometry, background,
-                        outline_at_points(geometry, background, run),
-                        [&] { (void)run.monitor.keep_going(0, 0); }),
-            0, false};
+    return {.mesh = triangulate(geometry, background,
+                                outline_at_points(geometry, background, run),
+                                [&] { (void)run.monitor.keep_going(0, 0); })};
   }
-}
-
-ShapeCounts shape(Workspace &w, const Run &run, const QualityFloor &floor) {
-  ShapeCounts counts;
-  const auto control = [&](double shortest, double longest) {
-    const LengthCounts done = control_lengths(w, run, {shortest, longest});
-    counts.lengths.splits += done.splits;
-    counts.lengths.collapses += done.collapses;
-  };
-  for (const Round &round : schedule) {
-    for (int k = 0; k < round.pliant_sweeps; ++k)
-      smooth(w, run, Target::unit_edges);
-    for (int k = 0; k < round.odt_sweeps; ++k)
-      smooth(w, run, Target::odt);
-    if (round.longest > 0) {
-      control(round.shortest, round.longest);
-      renumber(w, run.threads); // the new vertices into the blocks where they lie
-    }
-  }
-  control(shortest_outlier, longest_outlier);
-  counts.poor = repair(w, run, {{repair_floor, repair_floor}});
-  counts.bisections = bisect(w, run, floor);
-  return counts;
 }
 
 /// What certify_stars needs of a mesh of triangles.
@@ -213,6 +183,18 @@ void extract(Workspace &w, PlaneResult &out) {
   out.cell_tags = std::move(mesh.region);
 }
 
+/// What the curves and all passes leave for the report.
+void report(Workspace &w, const Run &run, const Start &start, PlaneResult &out) {
+  out.protected_corners = start.protected_corners;
+  out.unprotected_corners = start.unprotected_corners;
+  out.flips = w.legaliser.n_flips();
+  out.capped = w.legaliser.n_capped();
+  out.statistics =
+      measure(w.mesh.vertices, w.mesh.cells, w.mesh.neighbours, run.threads);
+  const bool is_short = !start.has_unit_curves && !run.is_stopped();
+  out.reason = is_short ? StopReason::max_vertices : run.monitor.reason();
+}
+
 } // namespace
 
 PlaneResult remesh(const Background<2> &background, const GeometryInput &input,
@@ -231,12 +213,14 @@ PlaneResult remesh(const Background<2> &background, const GeometryInput &input,
   const Projection project = timed(projection, monitor);
   Geometry geometry = make_geometry(input, &project);
   Start start = make_start(geometry, background, run, watch);
-  out.protected_corners = count_balls(start.mesh.curve_edges);
-  out.unprotected_corners = start.n_sharp_corners - out.protected_corners;
-  Workspace w{start.mesh, geometry, background, run.hausdorff.curve};
+
+  Workspace w{.on_curves = start.mesh,
+              .geometry = geometry,
+              .background = background,
+              .hausdorff = run.hausdorff.curve};
   out.kept_quality = kept_quality<2>(background.vertices(run.threads),
                                      background.locator().cells(), run.threads);
-  const QualityFloor floor{out.kept_quality, steep_floor};
+  const QualityFloor floor{.between_walls = out.kept_quality, .elsewhere = steep_floor};
   // the pure mode starts from the boundary alone
   const bool is_pure = settings.consistency == ConsistencyMode::pure;
   if (!is_pure)
@@ -252,14 +236,9 @@ PlaneResult remesh(const Background<2> &background, const GeometryInput &input,
   certify_stars(stars, run, settings, watch, out);
 
   watch.phase("report");
-  out.statistics =
-      measure(w.mesh.vertices, w.mesh.cells, w.mesh.neighbours, run.threads);
+  report(w, run, start, out);
   extract(w, out);
   watch.stop();
-  out.flips = w.legaliser.n_flips();
-  out.capped = w.legaliser.n_capped();
-  const bool is_short = !start.has_unit_curves && !run.is_stopped();
-  out.reason = is_short ? StopReason::max_vertices : monitor.reason();
   return out;
 }
 

@@ -3,19 +3,12 @@
 
 #include "metric/background.h"
 #include "plane/geometry/curves.h"
-#include "plane/passes/lengths.h"
 #include "plane/passes/refine.h"
+#include "plane/passes/shaping.h"
 #include "remesh/remesh_result.h"
 #include "remesh/remesh_settings.h"
 
 namespace anistar {
-
-/// What the passes that shape the cells did.
-struct ShapeCounts {
-  LengthCounts lengths;
-  std::size_t poor = 0; ///< cells that repair met last
-  std::size_t bisections = 0;
-};
 
 /// What every remesher returns, with the operations made in the plane.
 struct PlaneResult : RemeshResult<2> {

@@ -8,6 +8,12 @@ namespace anistar {
 
 struct LengthCounts {
   std::size_t splits = 0, collapses = 0;
+
+  LengthCounts &operator+=(const LengthCounts &other) {
+    splits += other.splits;
+    collapses += other.collapses;
+    return *this;
+  }
 };
 
 /// Bounds of the length of an edge.
