@@ -70,7 +70,7 @@ bool CavityOperator::collect(std::span<const Index> cells,
   outers_.clear();
   surface_.clear();
   const double threshold =
-      acceptance.threshold(old_minimum, volume_.data->kept_quality);
+      acceptance.threshold(old_minimum, volume_.state.kept_quality);
   bool has_base = false;
   for (Index c : cells) {
     const bool is_walled = volume_.is_walled(c);
@@ -285,7 +285,7 @@ void CavityOperator::commit(std::span<const Index> cells) {
     volume_.quality[c] = outer.quality;
     volume_.walled[c] = outer.constraint != none;
     volume_.touch(outer.cell);
-    volume_.data->slabs.add_cell(mesh.cells[c]);
+    volume_.state.slabs.add_cell(mesh.cells[c]);
     for (Index v : mesh.cells[c])
       mesh.vertex_cell[v] = outer.cell;
   }

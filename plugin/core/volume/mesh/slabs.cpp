@@ -106,7 +106,7 @@ Slabs cut_into_slabs(const Triangulation<3> &mesh) {
   }
   const double n = 1 / (cells_across * std::max(least, 1e-3));
   slabs.n =
-      std::clamp<std::size_t>(n, 1, std::min(most_slabs, n_vertices / fewest_vertices));
+      std::clamp(static_cast<std::size_t>(n), std::size_t{1}, std::min(most_slabs, n_vertices / fewest_vertices));
   if (slabs.n == 1)
     return slabs;
   const std::vector<double> cuts = quantiles(x, 2 * slabs.n);

@@ -11,7 +11,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
     v = mesh.add_vertex(vertex, dimension, background_cell);
     support.push_back(lies_on);
     vertex_clock.push_back(clock);
-    data->slabs.add_vertex(v);
+    state.slabs.add_vertex(v);
     ridges.resize(mesh.vertices.size());
     return v;
   }
@@ -22,13 +22,13 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
   mesh.background_cell[v] = background_cell;
   support[v] = lies_on;
   vertex_clock[v] = clock;
-  data->slabs.add_vertex(v);
+  state.slabs.add_vertex(v);
   return v;
 }
 
 void Volume::remove_vertex(Index v) {
   mesh.vertex_cell[v] = none;
-  free_vertices.push_back(v);
+  (slab ? removed : free_vertices).push_back(v);
 }
 
 Index Volume::add_cell() {
@@ -143,7 +143,7 @@ void renumber(Volume &volume, int threads) {
       volume.cell_clock[c] = clock;
     }
   });
-  volume.data->slabs = cut_into_slabs(mesh);
+  volume.state.slabs = cut_into_slabs(mesh);
 }
 
 } // namespace anistar

@@ -16,9 +16,11 @@
 
 namespace anistar {
 
-/// The mesh and what the passes remember of it. The constraint of a facet is its patch.
-struct VolumeState {
-  Triangulation<3> mesh;
+/// A mesh on its surfaces and ridges and what the passes remember of it: a value, of
+/// which a copy is a snapshot. The constraint of a facet is its patch.
+struct VolumeMesh {
+  Triangulation<3> triangulation;
+  std::vector<Index> free_vertices;
   RidgeGraph ridges;
   PerVertex<Index> support; ///< patch of a vertex on a surface, curve of one on a ridge
   PerCell<float> quality;
@@ -34,48 +36,52 @@ struct VolumeState {
   std::unordered_map<Index, std::vector<Index>> fans;
 };
 
-/// The same with what its facets and edges lie on, and its metric.
-struct VolumeData : VolumeState {
-  VolumeData(const Background<3> &field, SurfaceShape shape)
-      : background(field), surface(std::move(shape)) {}
+/// A view: what one thread sees of a mesh, of what its facets and edges lie on and of
+/// its metric, with marks of its own. It changes everything, or what is inside of a
+/// slab: cells all of whose vertices are in it. Cells between slabs stay as they are
+/// while there are several threads, so that none of them reads or writes what another
+/// one writes.
+class Volume {
+  /// What all views share.
+  struct Shared {
+    const Background<3> &background;
+    SurfaceShape surface;
+    VolumeMesh state{};
+    std::uint32_t clock = 1;
+  };
+  std::shared_ptr<Shared> shared_;
 
-  const Background<3> &background;
-  SurfaceShape surface;
-  std::uint32_t clock = 1;
-};
+  explicit Volume(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
 
-/// What one thread sees of the data, with marks of its own. It changes everything, or
-/// what is inside of a slab: cells all of whose vertices are in it. Cells between slabs
-/// stay as they are while there are several threads, so that none of them reads or
-/// writes what another one writes.
-struct Volume {
+public:
   Volume(const Background<3> &field, SurfaceShape shape)
-      : data(std::make_shared<VolumeData>(field, std::move(shape))) {}
-  /// Another view of the same data.
-  explicit Volume(std::shared_ptr<VolumeData> shared) : data(std::move(shared)) {}
+      : Volume(std::make_shared<Shared>(Shared{field, std::move(shape)})) {}
   Volume(const Volume &) = delete; // it would be a view, not a copy
   Volume(Volume &&) = default;
+  /// Another view of the same, without a slab.
+  [[nodiscard]] Volume view() const { return Volume(shared_); }
 
-  std::shared_ptr<VolumeData> data;
-  Triangulation<3> &mesh = data->mesh;
-  const Background<3> &background = data->background;
-  SurfaceShape &surface = data->surface;
-  RidgeGraph &ridges = data->ridges;
-  PerVertex<Index> &support = data->support;
-  PerCell<float> &quality = data->quality;
-  PerCell<std::uint8_t> &walled = data->walled;
-  PerCell<std::uint32_t> &cell_clock = data->cell_clock;
-  PerVertex<std::uint32_t> &vertex_clock = data->vertex_clock;
-  std::uint32_t &clock = data->clock;
-  std::unordered_map<Index, std::vector<Index>> &fans = data->fans;
-  std::vector<Index> free_vertices;
+  VolumeMesh &state = shared_->state; ///< may be put back to a copy of it
+  Triangulation<3> &mesh = state.triangulation;
+  const Background<3> &background = shared_->background;
+  SurfaceShape &surface = shared_->surface;
+  RidgeGraph &ridges = state.ridges;
+  PerVertex<Index> &support = state.support;
+  PerCell<float> &quality = state.quality;
+  PerCell<std::uint8_t> &walled = state.walled;
+  PerCell<std::uint32_t> &cell_clock = state.cell_clock;
+  PerVertex<std::uint32_t> &vertex_clock = state.vertex_clock;
+  std::uint32_t &clock = shared_->clock;
+  std::unordered_map<Index, std::vector<Index>> &fans = state.fans;
+  std::vector<Index> &free_vertices = state.free_vertices;
 
   std::optional<Slab> slab;      ///< none: no bound
   std::vector<Index> free_cells; ///< those of the slab
+  std::vector<Index> removed;    ///< vertices, in the slab
   bool is_put_off = false;       ///< an operation would have left the slab
 
   [[nodiscard]] bool is_inside(Index v) const {
-    return slab->contains(data->slabs.strip[v]);
+    return slab->contains(state.slabs.strip[v]);
   }
   [[nodiscard]] std::size_t n_vertices() const {
     return mesh.vertices.size() - free_vertices.size();

@@ -153,10 +153,10 @@ Shaping attempt(Volume start, Keeping keeping, const Run &run, Stopwatch &watch)
       kept_quality<3>(volume->mesh.vertices, volume->mesh.cells, run.threads);
   VolumePasses passes(*volume, run);
   watch.phase("size");
-  volume->data->kept_quality = keeping == Keeping::always ? kept : 0;
+  volume->state.kept_quality = keeping == Keeping::always ? kept : 0;
   grow(*volume, passes, run);
   watch.phase("shape");
-  volume->data->kept_quality = kept;
+  volume->state.kept_quality = kept;
   shape(passes, run, kept);
   renumber(*volume, run.threads);
   return {std::move(volume), passes.counts(), passes.is_full(), kept,

@@ -190,7 +190,7 @@ Index VolumePasses::new_vertex(const Vector<3> &x, Index dimension, Index lies_o
   Index at = volume_.mesh.background_cell[shell_.a];
   const Vertex<3> vertex = volume_.background.vertex(x, at);
   const Index v = volume_.add_vertex(vertex, dimension, lies_on, at);
-  std::vector<std::uint16_t> &strip = volume_.data->slabs.strip;
+  std::vector<std::uint16_t> &strip = volume_.state.slabs.strip;
   strip[v] = strip[shell_.a];
   return v;
 }

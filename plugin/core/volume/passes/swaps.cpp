@@ -22,7 +22,7 @@ void VolumePasses::swap(double quality) {
   in_slabs(
       std::move(cells),
       [&](Index c, int round) {
-        return volume_.data->slabs.of_cell(volume_.mesh.at(c), round);
+        return volume_.state.slabs.of_cell(volume_.mesh.at(c), round);
       },
       [=](VolumePasses &passes, Index c) {
         if (is_due(c))

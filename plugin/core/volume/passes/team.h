@@ -14,7 +14,7 @@ struct VolumePasses::Helper {
   VolumePasses passes;
 
   explicit Helper(VolumePasses &first)
-      : view(first.volume_.data), passes(view, first.run_) {}
+      : view(first.volume_.view()), passes(view, first.run_) {}
 };
 
 /// Gives the cells that are free to the slabs, for `n_items[k]` items each. The arrays
@@ -41,11 +41,11 @@ void VolumePasses::visit_in_slab(std::span<const Index> items, Visit visit,
 /// @param visit(passes, item) changes nothing outside of the slab of passes
 template <class SlabOf, class Visit>
 void VolumePasses::in_slabs(std::vector<Index> items, SlabOf slab_of, Visit visit) {
-  const Slabs &slabs = volume_.data->slabs;
+  const Slabs &slabs = volume_.state.slabs;
   const bool is_alone = slabs.n == 1 || volume_.surface.has_projection();
   for (int round = 0; round < Slabs::n_rounds && !is_alone; ++round) {
     const std::size_t n = slabs.count(round);
-    std::vector<std::vector<Index>> waiting(n), put_off(n), free_vertices(n);
+    std::vector<std::vector<Index>> waiting(n), put_off(n), removed(n);
     std::vector<Index> rest;
     for (Index item : items) {
       const std::size_t k = slab_of(item, round);
@@ -57,7 +57,6 @@ void VolumePasses::in_slabs(std::vector<Index> items, SlabOf slab_of, Visit visi
     std::atomic<std::size_t> next = 0;
     while (std::cmp_less(team_.size() + 1, run_.threads))
       team_.push_back(std::make_shared<Helper>(*this));
-    std::vector<Index> kept = std::move(volume_.free_vertices);
     parallel_items(n, run_.threads, [&] {
       VolumePasses &passes =
           std::this_thread::get_id() == caller ? *this : team_[next++]->passes;
@@ -70,21 +69,19 @@ void VolumePasses::in_slabs(std::vector<Index> items, SlabOf slab_of, Visit visi
         Volume &view = passes.volume_;
         view.slab = slabs.slab(k, round);
         view.free_cells = std::move(free_cells[k]);
-        view.free_vertices.clear();
         passes.visit_in_slab(waiting[k], visit, put_off[k]);
         view.slab.reset();
         free_cells[k] = std::move(view.free_cells);
-        free_vertices[k] = std::move(view.free_vertices);
+        removed[k] = std::exchange(view.removed, {});
       };
     });
-    volume_.free_vertices = std::move(kept);
     items = std::move(rest);
     const auto append = [](std::vector<Index> &to, const std::vector<Index> &from) {
       to.insert(to.end(), from.begin(), from.end());
     };
     for (std::size_t k = 0; k < n; ++k) {
       append(items, put_off[k]);
-      append(volume_.free_vertices, free_vertices[k]);
+      append(volume_.free_vertices, removed[k]);
       append(volume_.mesh.free_cells, free_cells[k]);
     }
     for (const auto &helper : team_)

@@ -233,7 +233,7 @@ void VolumePasses::vertices(const VertexRule &rule) {
       std::move(all),
       [&](Index v, int round) { // the graph of ridges is no slab's
         return volume_.feature(v) <= 1 ? Slabs::nowhere
-                                       : volume_.data->slabs.of_star(v, round);
+                                       : volume_.state.slabs.of_star(v, round);
       },
       [&, since](VolumePasses &passes, Index v) {
         if (mesh.is_used(v) && volume_.vertex_clock[v] >= since)

@@ -89,10 +89,7 @@ public:
   using Score = PointScore;
 
   /// What a run must be able to return to.
-  struct Snapshot {
-    VolumeState state;
-    std::vector<Index> free_vertices;
-  };
+  using Snapshot = VolumeMesh;
 
   Rounds(Volume &volume, const Run &run, const ConsistencyParameters &parameters,
          const DelaunayBits &known)
@@ -111,13 +108,8 @@ public:
   [[nodiscard]] bool are_rules_everywhere() const { return false; }
   [[nodiscard]] bool is_starting() const { return false; }
   [[nodiscard]] int rounds_without_gain() const { return progress_.since_best; }
-  [[nodiscard]] Snapshot snapshot() const {
-    return {*volume_.data, volume_.free_vertices};
-  }
-  void restore(Snapshot &&from) {
-    static_cast<VolumeState &>(*volume_.data) = std::move(from.state);
-    volume_.free_vertices = std::move(from.free_vertices);
-  }
+  [[nodiscard]] Snapshot snapshot() const { return volume_.state; }
+  void restore(Snapshot &&from) { volume_.state = std::move(from); }
   void note(double failing, double) { progress_.note(failing); }
 
   void treat(const std::vector<BadCell<3>> &bad, ConsistencyCounts &counts,
