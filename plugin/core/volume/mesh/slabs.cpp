@@ -105,8 +105,8 @@ Slabs cut_into_slabs(const Triangulation<3> &mesh) {
     }
   }
   const double n = 1 / (cells_across * std::max(least, 1e-3));
-  slabs.n =
-      std::clamp(static_cast<std::size_t>(n), std::size_t{1}, std::min(most_slabs, n_vertices / fewest_vertices));
+  slabs.n = std::clamp(static_cast<std::size_t>(n), std::size_t{1},
+                       std::min(most_slabs, n_vertices / fewest_vertices));
   if (slabs.n == 1)
     return slabs;
   const std::vector<double> cuts = quantiles(x, 2 * slabs.n);
