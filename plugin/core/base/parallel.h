@@ -62,6 +62,26 @@ template <class Make> void parallel_items(std::size_t n, int threads, Make make)
              });
 }
 
+/// Ends a loop on several threads. Only the thread that made it looks whether to: what
+/// is asked then, a function of the user among it, is not called from any other.
+class StopSignal {
+public:
+  explicit StopSignal(bool is_stopped = false) : is_stopped_(is_stopped) {}
+
+  [[nodiscard]] bool is_caller() const { return std::this_thread::get_id() == caller_; }
+  /// Asks look() on the thread that may. @returns whether the loop goes on.
+  template <class Look> bool goes_on(Look look) {
+    if (is_caller() && !look())
+      is_stopped_ = true;
+    return !is_stopped_;
+  }
+  [[nodiscard]] bool is_stopped() const { return is_stopped_; }
+
+private:
+  std::thread::id caller_ = std::this_thread::get_id();
+  std::atomic<bool> is_stopped_;
+};
+
 /// The items that visit(k, add) adds for 0 <= k < n, in the order of k.
 template <class Item, class Visit>
 [[nodiscard]] std::vector<Item> parallel_search(std::size_t n, int threads,

@@ -115,16 +115,16 @@ template <std::size_t d>
 void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> cells, int threads,
                 const Look &look, DelaunayBits &known) {
   const std::size_t n = cells.size(), n_parts = (n + cells_at_once - 1) / cells_at_once;
-  const auto caller = std::this_thread::get_id();
-  std::atomic<bool> is_going = true;
+  StopSignal stop;
   parallel_items(n_parts, threads, [&] {
     return [&, test = DelaunayTest<d>(mesh)](std::size_t part) mutable {
-      if (std::this_thread::get_id() == caller &&
-          !look(static_cast<double>(part) / static_cast<double>(n_parts)))
-        is_going = false;
+      if (!stop.goes_on([&] {
+            return look(static_cast<double>(part) / static_cast<double>(n_parts));
+          }))
+        return;
       const std::size_t begin = part * cells_at_once;
-      for (std::size_t k = begin; is_going && k < std::min(n, begin + cells_at_once);
-           ++k) {
+      for (std::size_t k = begin;
+           !stop.is_stopped() && k < std::min(n, begin + cells_at_once); ++k) {
         const std::size_t c = cells[k];
         known.bits[c] = test.bits(cells[k]);
         known.reach[c] = test.reach();

@@ -78,14 +78,11 @@ bool visit_in_blocks(const Blocks &blocks, std::span<const Index> vertices, int 
   std::vector<std::vector<Index>> waiting(blocks.size()), put_off(blocks.size());
   for (Index v : vertices)
     waiting[blocks.of(v)].push_back(v);
-  const auto caller = std::this_thread::get_id();
-  std::atomic<bool> stopped = !monitor.look(fraction);
+  StopSignal stop(!monitor.look(fraction));
   std::mutex leaving;
   parallel_items(blocks.size(), threads, [&] {
     return [&, visitor = make()](std::size_t k) mutable {
-      if (std::this_thread::get_id() == caller && !monitor.look(fraction))
-        stopped = true;
-      if (stopped)
+      if (!stop.goes_on([&] { return monitor.look(fraction); }))
         return;
       for (Index v : waiting[k])
         if (!visitor.visit(v, blocks[k]))
@@ -96,11 +93,11 @@ bool visit_in_blocks(const Blocks &blocks, std::span<const Index> vertices, int 
   });
   for (const std::vector<Index> &vertices_of_block : put_off)
     for (Index v : vertices_of_block) {
-      if (stopped || !monitor.keep_going(0, fraction))
+      if (stop.is_stopped() || !monitor.keep_going(0, fraction))
         return false;
       (void)last.visit(v, VertexRange{});
     }
-  return !stopped;
+  return !stop.is_stopped();
 }
 
 } // namespace anistar
