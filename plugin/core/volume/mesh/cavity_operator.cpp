@@ -296,6 +296,17 @@ void CavityOperator::commit(std::span<const Index> cells) {
     update_fans(cells);
 }
 
+/// The cells across the boundary of the cavity will have new neighbours.
+bool CavityOperator::stays_in_slab(std::span<const Index> cells) const {
+  std::size_t n_new = 0;
+  for (const Outer &outer : outers_) {
+    n_new += outer.kind == Kind::base;
+    if (outer.beyond.exists() && !volume_.is_inside(volume_.mesh.apex(outer.beyond)))
+      return false;
+  }
+  return n_new <= cells.size() + volume_.free_cells.size();
+}
+
 void CavityOperator::update_fans(std::span<const Index> cells) {
   const auto is_old = [&](Index c) {
     return std::find(cells.begin(), cells.end(), c) != cells.end();

@@ -1,4 +1,4 @@
-#include "volume/passes/team.h"
+#include "volume/passes/slab_team.h"
 
 namespace anistar {
 namespace {

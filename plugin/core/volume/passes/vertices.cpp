@@ -1,7 +1,7 @@
 #include "volume/passes/passes.h"
 
 #include "base/random.h"
-#include "volume/passes/team.h"
+#include "volume/passes/slab_team.h"
 
 namespace anistar {
 namespace {

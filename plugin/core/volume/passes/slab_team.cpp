@@ -1,4 +1,4 @@
-#include "volume/passes/team.h"
+#include "volume/passes/slab_team.h"
 
 namespace anistar {
 
@@ -23,17 +23,6 @@ deal_free_cells(Volume &volume, const std::vector<std::vector<Index>> &items) {
   }
   volume.mesh.free_cells = std::move(free);
   return dealt;
-}
-
-/// The cells across the boundary of the cavity will have new neighbours.
-bool CavityOperator::stays_in_slab(std::span<const Index> cells) const {
-  std::size_t n_new = 0;
-  for (const Outer &outer : outers_) {
-    n_new += outer.kind == Kind::base;
-    if (outer.beyond.exists() && !volume_.is_inside(volume_.mesh.apex(outer.beyond)))
-      return false;
-  }
-  return n_new <= cells.size() + volume_.free_cells.size();
 }
 
 VolumeCounts &VolumeCounts::operator+=(const VolumeCounts &other) {
