@@ -145,8 +145,8 @@ VolumeResult remesh_volume(const VolumeInput &input,
                                    settings.threads);
     const SurfaceProjection project = timed(std::move(projection), monitor);
     const Shaping shaping = shape_volume(
-        [&] { return make_volume(input, metric, background, geometry, project); },
-        run, watch);
+        [&] { return make_volume(input, metric, background, geometry, project); }, run,
+        watch);
     Volume &volume = *shaping.volume;
     VolumeStars stars(volume, run);
     certify_stars(stars, run, settings, watch, out);

@@ -1,5 +1,5 @@
 #pragma once
-// Phases 2 and 3 of remeshing in 3D: the mesh is brought to its size and its shape.
+// The schedule of the passes: the mesh is brought to its size, and then to its shape.
 
 #include "base/stopwatch.h"
 #include "volume/passes/passes.h"
@@ -19,11 +19,11 @@ struct Shaping {
 
 /// Splits and collapses until the edges have unit length, and improves the cells.
 ///
-/// No step of phase 3 lowers the least quality below what is kept. Where that is not
-/// enough another mesh is made which keeps it all the time, and the better one is
+/// No step at the final size lowers the least quality below what is kept. Where that is
+/// not enough another mesh is made which keeps it all the time, and the better one is
 /// returned.
 /// @param start makes the mesh that it begins with
-[[nodiscard]] Shaping shape_volume(const std::function<Volume()> &start,
-                                   const Run &run, Stopwatch &watch);
+[[nodiscard]] Shaping shape_volume(const std::function<Volume()> &start, const Run &run,
+                                   Stopwatch &watch);
 
 } // namespace anistar

@@ -2,38 +2,37 @@
 
 namespace anistar {
 
-std::vector<std::vector<Index>>
-deal_free_cells(Volume &volume, const std::vector<std::vector<Index>> &items) {
+void deal_free_cells(Volume &volume, std::vector<SlabWork> &work) {
   // re-insertions and swaps make one more cell now and then; what finds no room is put
   // off
-  const auto share = [](std::size_t n) { return n / 8 + 64; };
+  const auto share = [](const SlabWork &of) { return of.waiting.size() / 8 + 64; };
   std::size_t needed = 0;
-  for (const std::vector<Index> &of_slab : items)
-    needed += share(of_slab.size());
+  for (const SlabWork &of_slab : work)
+    needed += share(of_slab);
   std::vector<Index> free = std::exchange(volume.mesh.free_cells, {});
   while (free.size() < needed) {
     free.push_back(volume.add_cell());
     volume.mesh.at(free.back())[0] = none;
   }
-  std::vector<std::vector<Index>> dealt;
-  for (const std::vector<Index> &of_slab : items) {
-    const auto first = free.end() - static_cast<std::ptrdiff_t>(share(of_slab.size()));
-    dealt.emplace_back(first, free.end());
+  for (SlabWork &of_slab : work) {
+    const auto first = free.end() - static_cast<std::ptrdiff_t>(share(of_slab));
+    of_slab.free_cells.assign(first, free.end());
     free.erase(first, free.end());
   }
   volume.mesh.free_cells = std::move(free);
-  return dealt;
 }
 
-VolumeCounts &VolumeCounts::operator+=(const VolumeCounts &other) {
-  splits += other.splits;
-  collapses += other.collapses;
-  edge_swaps += other.edge_swaps;
-  face_swaps += other.face_swaps;
-  moves += other.moves;
-  insertions += other.insertions;
-  repairs += other.repairs;
-  return *this;
+std::vector<Index> collect(Volume &volume, const std::vector<SlabWork> &work) {
+  const auto append = [](std::vector<Index> &to, const std::vector<Index> &from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  std::vector<Index> put_off;
+  for (const SlabWork &of_slab : work) {
+    append(put_off, of_slab.put_off);
+    append(volume.free_vertices, of_slab.removed);
+    append(volume.mesh.free_cells, of_slab.free_cells);
+  }
+  return put_off;
 }
 
 } // namespace anistar

@@ -1,94 +1,116 @@
 #pragma once
-// How several threads make a pass over a volume mesh, slab by slab.
+// How several threads make a pass over a volume mesh, slab by slab (see
+// volume/mesh/slabs.h).
 
 #include "base/parallel.h"
 #include "volume/passes/passes.h"
 
-#include <utility>
+#include <deque>
 
 namespace anistar {
 
-/// A further thread's own view and passes.
-struct VolumePasses::Helper {
-  Volume view;
-  VolumePasses passes;
-
-  explicit Helper(VolumePasses &first)
-      : view(first.volume_.view()), passes(view, first.run_) {}
+/// What concerns one slab in one round.
+struct SlabWork {
+  std::vector<Index> waiting;    ///< items to visit
+  std::vector<Index> put_off;    ///< those that want what is outside of it
+  std::vector<Index> free_cells; ///< that it may use
+  std::vector<Index> removed;    ///< vertices
 };
 
-/// Gives the cells that are free to the slabs, for `n_items[k]` items each. The arrays
-/// must not grow later on.
-[[nodiscard]] std::vector<std::vector<Index>>
-deal_free_cells(Volume &volume, const std::vector<std::vector<Index>> &items);
+/// Gives the cells that are free to the slabs, as the items that wait may need them.
+/// The arrays must not grow later on.
+void deal_free_cells(Volume &volume, std::vector<SlabWork> &work);
+/// Gives back what the slabs have left. @returns the items that were put off
+[[nodiscard]] std::vector<Index> collect(Volume &volume,
+                                         const std::vector<SlabWork> &work);
 
-/// Visits the items of one slab. @param put_off those that want what is outside of it
-template <class Visit>
-void VolumePasses::visit_in_slab(std::span<const Index> items, Visit visit,
-                                 std::vector<Index> &put_off) {
-  for (Index item : items) {
-    volume_.is_put_off = false;
-    visit(*this, item);
-    if (volume_.is_put_off)
-      put_off.push_back(item);
+/// Threads with a view of the volume and a visitor each: visit(item) changes nothing
+/// outside of the slab of the view, `counts` is what it has done.
+template <class Visitor> class SlabTeam {
+public:
+  /// @param make(view) makes a visitor
+  template <class Make>
+  SlabTeam(Volume &volume, const Run &run, Make make) : volume_(volume), run_(run) {
+    members_.emplace_back(volume, make);
+    for (int k = 1; k < run.threads && !is_alone(); ++k)
+      members_.emplace_back(views_.emplace_back(volume.view()), make);
   }
-  volume_.is_put_off = false;
-}
 
-/// Visits items in the slabs of one round after another, each on some thread, and then
-/// what was put off on the calling one. All depends on the mesh alone.
-/// @param slab_of gives the slab of an item in a round
-/// @param visit(passes, item) changes nothing outside of the slab of passes
-template <class SlabOf, class Visit>
-void VolumePasses::in_slabs(std::vector<Index> items, SlabOf slab_of, Visit visit) {
-  const Slabs &slabs = volume_.state.slabs;
-  const bool is_alone = slabs.n == 1 || volume_.surface.has_projection();
-  for (int round = 0; round < Slabs::n_rounds && !is_alone; ++round) {
-    const std::size_t n = slabs.count(round);
-    std::vector<std::vector<Index>> waiting(n), put_off(n), removed(n);
+  /// Visits items in the slabs of one round after another, each on some thread, and
+  /// then what was put off on the calling one. All depends on the mesh alone.
+  /// @param slab_of(item, round) gives the slab of an item
+  /// @returns what was done
+  template <class SlabOf> VolumeCounts visit(std::vector<Index> items, SlabOf slab_of) {
+    for (int round = 0; round < Slabs::n_rounds && !is_alone(); ++round)
+      items = visit_round(items, slab_of, round);
+    for (std::size_t k = 0; k < items.size() && run_.goes_on(k, items.size()); ++k)
+      first().visit(items[k]);
+    VolumeCounts counts;
+    for (const Member &member : members_)
+      counts += member.visitor.counts;
+    return counts;
+  }
+  /// The visitor of the calling thread.
+  [[nodiscard]] Visitor &first() { return members_.front().visitor; }
+
+private:
+  struct Member {
+    Volume &view;
+    Visitor visitor;
+
+    template <class Make>
+    Member(Volume &seen, Make make) : view(seen), visitor(make(seen)) {}
+
+    void visit(SlabWork &work, Slab slab) {
+      view.slab = slab;
+      view.free_cells = std::move(work.free_cells);
+      for (Index item : work.waiting) {
+        view.is_put_off = false;
+        visitor.visit(item);
+        if (view.is_put_off)
+          work.put_off.push_back(item);
+      }
+      view.is_put_off = false;
+      view.slab.reset();
+      work.free_cells = std::move(view.free_cells);
+      work.removed = std::exchange(view.removed, {});
+    }
+  };
+
+  Volume &volume_;
+  const Run &run_;
+  std::deque<Volume> views_; ///< of all threads but the calling one
+  std::deque<Member> members_;
+
+  [[nodiscard]] bool is_alone() const {
+    return volume_.state.slabs.n == 1 || volume_.surface.has_projection();
+  }
+
+  /// @returns what has no slab in this round, or was put off.
+  template <class SlabOf>
+  [[nodiscard]] std::vector<Index> visit_round(const std::vector<Index> &items,
+                                               SlabOf slab_of, int round) {
+    const Slabs &slabs = volume_.state.slabs;
+    std::vector<SlabWork> work(slabs.count(round));
     std::vector<Index> rest;
     for (Index item : items) {
       const std::size_t k = slab_of(item, round);
-      (k == Slabs::nowhere ? rest : waiting[k]).push_back(item);
+      (k == Slabs::nowhere ? rest : work[k].waiting).push_back(item);
     }
-    std::vector<std::vector<Index>> free_cells = deal_free_cells(volume_, waiting);
-    const auto caller = std::this_thread::get_id();
-    std::atomic<bool> stopped = run_.is_stopped();
-    std::atomic<std::size_t> next = 0;
-    while (std::cmp_less(team_.size() + 1, run_.threads))
-      team_.push_back(std::make_shared<Helper>(*this));
-    parallel_items(n, run_.threads, [&] {
-      VolumePasses &passes =
-          std::this_thread::get_id() == caller ? *this : team_[next++]->passes;
+    deal_free_cells(volume_, work);
+    StopSignal stop(run_.is_stopped());
+    std::atomic<std::size_t> next = 1;
+    parallel_items(work.size(), run_.threads, [&] {
+      Member &member = members_[stop.is_caller() ? 0 : next++];
       return [&](std::size_t k) {
-        if (std::this_thread::get_id() == caller &&
-            !run_.monitor.look(static_cast<double>(k) / static_cast<double>(n)))
-          stopped = true;
-        if (stopped)
-          return;
-        Volume &view = passes.volume_;
-        view.slab = slabs.slab(k, round);
-        view.free_cells = std::move(free_cells[k]);
-        passes.visit_in_slab(waiting[k], visit, put_off[k]);
-        view.slab.reset();
-        free_cells[k] = std::move(view.free_cells);
-        removed[k] = std::exchange(view.removed, {});
+        if (stop.goes_on([&] { return run_.look(k, work.size()); }))
+          member.visit(work[k], slabs.slab(k, round));
       };
     });
-    items = std::move(rest);
-    const auto append = [](std::vector<Index> &to, const std::vector<Index> &from) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    for (std::size_t k = 0; k < n; ++k) {
-      append(items, put_off[k]);
-      append(volume_.free_vertices, removed[k]);
-      append(volume_.mesh.free_cells, free_cells[k]);
-    }
-    for (const auto &helper : team_)
-      counts_ += std::exchange(helper->passes.counts_, {});
+    const std::vector<Index> put_off = collect(volume_, work);
+    rest.insert(rest.end(), put_off.begin(), put_off.end());
+    return rest;
   }
-  for (std::size_t k = 0; k < items.size() && go_on(k, items.size()); ++k)
-    visit(*this, items[k]);
-}
+};
 
 } // namespace anistar
