@@ -32,7 +32,7 @@ types: setup check-stubs ## Check the types of the installed package
 # Without the shapes of arrays, which no type checker reads.
 define write_stub
 	@$(PYTHON) -m nanobind.stubgen -q -m anistar._core -o $(1)
-	@sed -E -i 's/Annotated\[(NDArray\[[^]]*\]), dict\([^]]*\)\]/\1/g; /^from typing import Annotated$$/d' $(1)
+	@sed -E -i 's/Annotated\[(NDArray\[[^]]*\]), dict\([^]]*\)\]/\1/g; s/import Annotated, /import /' $(1)
 	@$(PYTHON) -m ruff format --quiet $(1)
 endef
 

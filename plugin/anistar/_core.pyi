@@ -1,95 +1,167 @@
 """The compiled core of anistar."""
 
-from typing import Annotated
+from collections.abc import Sequence
+import enum
+from typing import Any
 
 import numpy
 from numpy.typing import NDArray
 
+class MeshingError(RuntimeError):
+    pass
 
-def certify2(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], threads: int) -> dict:
+class MeshArrays:
+    """A mesh as arrays, which are not copied."""
+
+    def __init__(
+        self,
+        *,
+        points: NDArray[numpy.float64],
+        cells: NDArray[numpy.int32],
+        cell_tags: NDArray[numpy.int32],
+        facets: NDArray[numpy.int32],
+        facet_tags: NDArray[numpy.int32],
+        edges: NDArray[numpy.int32],
+        edge_tags: NDArray[numpy.int32],
+        corners: NDArray[numpy.int32],
+    ) -> None: ...
+    @property
+    def points(self) -> NDArray[numpy.float64]: ...
+    @property
+    def cells(self) -> NDArray[numpy.int32]: ...
+    @property
+    def cell_tags(self) -> NDArray[numpy.int32]: ...
+    @property
+    def facets(self) -> NDArray[numpy.int32]: ...
+    @property
+    def facet_tags(self) -> NDArray[numpy.int32]: ...
+    @property
+    def edges(self) -> NDArray[numpy.int32]: ...
+    @property
+    def edge_tags(self) -> NDArray[numpy.int32]: ...
+    @property
+    def corners(self) -> NDArray[numpy.int32]: ...
+
+def certify2(
+    points: NDArray[numpy.float64],
+    cells: NDArray[numpy.int32],
+    metric: NDArray[numpy.float64],
+    facets: NDArray[numpy.int32],
+    threads: int,
+) -> dict:
     """The certificate of a mesh for the metric at its points."""
 
-def delaunay_violator2(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], cell: int, metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> int:
+def delaunay_violator2(
+    points: NDArray[numpy.float64],
+    cells: NDArray[numpy.int32],
+    facets: NDArray[numpy.int32],
+    cell: int,
+    metric: NDArray[numpy.float64],
+) -> int:
     """
     A vertex that the cell reaches inside its circumsphere for one metric, -1 when it is Delaunay.
     """
 
-def in_metric_sphere2(metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], simplex: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> int:
-    """Exactly: 1 inside, 0 on, -1 outside the circumscribed ellipsoid."""
-
-def side_of_metric_ball2(metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], simplex: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> int:
-    """The same as in_metric_sphere, as the certificate computes it."""
-
-def meets_metric_ball2(metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], simplex: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facet: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> bool:
-    """Exactly: whether a facet meets the open circumscribed ellipsoid."""
-
-def certify3(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], threads: int) -> dict:
+def certify3(
+    points: NDArray[numpy.float64],
+    cells: NDArray[numpy.int32],
+    metric: NDArray[numpy.float64],
+    facets: NDArray[numpy.int32],
+    threads: int,
+) -> dict:
     """The certificate of a mesh for the metric at its points."""
 
-def delaunay_violator3(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], cell: int, metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> int:
+def delaunay_violator3(
+    points: NDArray[numpy.float64],
+    cells: NDArray[numpy.int32],
+    facets: NDArray[numpy.int32],
+    cell: int,
+    metric: NDArray[numpy.float64],
+) -> int:
     """
     A vertex that the cell reaches inside its circumsphere for one metric, -1 when it is Delaunay.
     """
 
-def in_metric_sphere3(metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], simplex: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> int:
-    """Exactly: 1 inside, 0 on, -1 outside the circumscribed ellipsoid."""
-
-def side_of_metric_ball3(metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], simplex: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> int:
-    """The same as in_metric_sphere, as the certificate computes it."""
-
-def meets_metric_ball3(metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], simplex: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facet: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> bool:
-    """Exactly: whether a facet meets the open circumscribed ellipsoid."""
-
-def facet_margin(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> float:
-    """
-    For the cells abcd and abce: positive when e lies inside the circumscribed ellipsoid of abcd for the metric at one of the five points.
-    """
-
-def intersect(first: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], second: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+def intersect(
+    first: NDArray[numpy.float64], second: NDArray[numpy.float64]
+) -> NDArray[numpy.float64]:
     """Intersect two fields of metrics (n, d, d) by simultaneous reduction."""
 
-def exp(values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+def exp(values: NDArray[numpy.float64]) -> NDArray[numpy.float64]:
     """exp of values (n,)."""
 
-def log(values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+def log(values: NDArray[numpy.float64]) -> NDArray[numpy.float64]:
     """Natural logarithm of values (n,)."""
 
-def power(values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], exponent: float) -> NDArray[numpy.float64]:
+def power(values: NDArray[numpy.float64], exponent: float) -> NDArray[numpy.float64]:
     """A power of values (n,) that are not negative."""
 
-def cosine(values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+def cosine(values: NDArray[numpy.float64]) -> NDArray[numpy.float64]:
     """Cosine of angles (n,) in radians."""
 
-def angle_of(y: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+def angle_of(y: NDArray[numpy.float64], x: NDArray[numpy.float64]) -> NDArray[numpy.float64]:
     """The angles (n,) of the vectors (x, y), in [-pi, pi]."""
 
-def close_facets2(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], contact: float) -> NDArray[numpy.int32]:
-    """Pairs of facets without a clear gap between them, each once, (n, 2)."""
-
-def close_facets3(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], contact: float) -> NDArray[numpy.int32]:
-    """Pairs of facets without a clear gap between them, each once, (n, 2)."""
-
-def facet_shapes2(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], cell_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], facet_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], corners: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], frozen_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], shape: dict) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
-    """
-    Measure of the smooth shape at each facet, what it adds behind the facet, and how far it may lie from it; length of the smooth ridge at each edge.
-    """
-
-def facet_shapes3(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], facet_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], edges: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], edge_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], corners: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], frozen_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], shape: dict) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
-    """
-    Measure of the smooth shape at each facet, what it adds behind the facet, and how far it may lie from it; length of the smooth ridge at each edge.
-    """
-
-def grade(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], offsets: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], neighbours: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], *, model: str, log_factor: float, max_distortion: float, tolerance: float, max_rounds: int) -> tuple:
+def grade(
+    points: NDArray[numpy.float64],
+    metric: NDArray[numpy.float64],
+    offsets: NDArray[numpy.int32],
+    neighbours: NDArray[numpy.int32],
+    *,
+    model: str,
+    log_factor: float,
+    max_distortion: float,
+    tolerance: float,
+    max_rounds: int,
+) -> tuple:
     """
     Grade a metric (n, d, d) along a graph given by offsets and neighbours; returns (metric, rounds, updates, converged).
     """
 
+def pieces(
+    points: NDArray[numpy.float64], cells: NDArray[numpy.int32], metric: NDArray[numpy.float64]
+) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]:
+    """
+    Into how many pieces a metric divides the longest edge of each point, and the fewest among its neighbours.
+    """
+
+def spectra(tensors: NDArray[numpy.float64]) -> tuple:
+    """
+    Eigenvalues (n, d), increasing, and eigenvectors (n, d, d) in columns of symmetric tensors (n, d, d).
+    """
+
+def compose(
+    values: NDArray[numpy.float64], vectors: NDArray[numpy.float64]
+) -> NDArray[numpy.float64]:
+    """The tensors (n, d, d) with the given eigenvalues and eigenvectors."""
+
+def product(
+    first: NDArray[numpy.float64], second: NDArray[numpy.float64]
+) -> NDArray[numpy.float64]:
+    """The products of matrices (n, d, d)."""
+
+def wide_graph(cells: NDArray[numpy.int32], n_points: int) -> tuple:
+    """
+    The graph of the edges of a mesh and of the vertices opposite across facets; returns (offsets, neighbours).
+    """
+
+def close_facets2(
+    points: NDArray[numpy.float64], facets: NDArray[numpy.int32], contact: float
+) -> NDArray[numpy.int32]:
+    """Pairs of facets without a clear gap between them, each once, (n, 2)."""
+
+def close_facets3(
+    points: NDArray[numpy.float64], facets: NDArray[numpy.int32], contact: float
+) -> NDArray[numpy.int32]:
+    """Pairs of facets without a clear gap between them, each once, (n, 2)."""
+
 class Locator2:
     """Exact point location in a simplicial mesh."""
 
-    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
-
-    def locate(self, queries: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64], NDArray[numpy.float64]]:
+    def __init__(self, points: NDArray[numpy.float64], cells: NDArray[numpy.int32]) -> None: ...
+    def locate(
+        self, queries: NDArray[numpy.float64]
+    ) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64], NDArray[numpy.float64]]:
         """
         Cell, barycentric coordinates and distance of the mesh point nearest to each query.
         """
@@ -97,55 +169,72 @@ class Locator2:
 class Locator3:
     """Exact point location in a simplicial mesh."""
 
-    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
-
-    def locate(self, queries: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64], NDArray[numpy.float64]]:
+    def __init__(self, points: NDArray[numpy.float64], cells: NDArray[numpy.int32]) -> None: ...
+    def locate(
+        self, queries: NDArray[numpy.float64]
+    ) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64], NDArray[numpy.float64]]:
         """
         Cell, barycentric coordinates and distance of the mesh point nearest to each query.
         """
 
-def nearest_facets2(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], queries: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64]]:
+def nearest_facets2(
+    points: NDArray[numpy.float64], facets: NDArray[numpy.int32], queries: NDArray[numpy.float64]
+) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64]]:
     """The row of the facet nearest to each query, and its distance."""
 
-def nearest_in_metric2(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], queries: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], metrics: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], seeds: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> NDArray[numpy.int32]:
+def nearest_in_metric2(
+    points: NDArray[numpy.float64],
+    queries: NDArray[numpy.float64],
+    metrics: NDArray[numpy.float64],
+    seeds: NDArray[numpy.int32],
+) -> NDArray[numpy.int32]:
     """The point nearest to each query in the query's own metric."""
 
-def nearest_facets3(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], queries: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64]]:
+def nearest_facets3(
+    points: NDArray[numpy.float64], facets: NDArray[numpy.int32], queries: NDArray[numpy.float64]
+) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64]]:
     """The row of the facet nearest to each query, and its distance."""
 
-def nearest_in_metric3(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], queries: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], metrics: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], seeds: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> NDArray[numpy.int32]:
+def nearest_in_metric3(
+    points: NDArray[numpy.float64],
+    queries: NDArray[numpy.float64],
+    metrics: NDArray[numpy.float64],
+    seeds: NDArray[numpy.int32],
+) -> NDArray[numpy.int32]:
     """The point nearest to each query in the query's own metric."""
 
-def pieces(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]:
-    """
-    Into how many pieces a metric divides the longest edge of each point, and the fewest among its neighbours.
-    """
-
-class MeshingError(RuntimeError):
-    pass
-
-def remesh2(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], geometry_points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], geometry_cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], geometry_cell_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], geometry_facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], geometry_facet_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], corners: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], frozen_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], shape: dict, settings: dict, project: object | None, callback: object | None) -> dict:
-    """
-    A mesh of the geometry with unit edges in the metric that the mesh (points, cells) carries.
-    """
-
-def spectra(tensors: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> tuple:
-    """
-    Eigenvalues (n, d), increasing, and eigenvectors (n, d, d) in columns of symmetric tensors (n, d, d).
-    """
-
-def compose(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], vectors: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
-    """The tensors (n, d, d) with the given eigenvalues and eigenvectors."""
-
-def product(first: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], second: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
-    """The products of matrices (n, d, d)."""
-
-def supermesh2(source_points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], source_cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], source_regions: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], target_points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], target_cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], target_regions: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], nodal: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], *, points: bool, blocks: bool, threads: int, callback: object | None) -> dict:
+def supermesh2(
+    source_points: NDArray[numpy.float64],
+    source_cells: NDArray[numpy.int32],
+    source_regions: NDArray[numpy.int32],
+    target_points: NDArray[numpy.float64],
+    target_cells: NDArray[numpy.int32],
+    target_regions: NDArray[numpy.int32],
+    nodal: NDArray[numpy.float64],
+    *,
+    points: bool,
+    blocks: bool,
+    threads: int,
+    callback: object | None,
+) -> dict:
     """
     Lay two meshes over each other: matrices (starts, columns, values) between points and between cells, moments of the pairs, loads of nodal values, and coverage.
     """
 
-def supermesh3(source_points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], source_cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], source_regions: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], target_points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], target_cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], target_regions: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], nodal: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], *, points: bool, blocks: bool, threads: int, callback: object | None) -> dict:
+def supermesh3(
+    source_points: NDArray[numpy.float64],
+    source_cells: NDArray[numpy.int32],
+    source_regions: NDArray[numpy.int32],
+    target_points: NDArray[numpy.float64],
+    target_cells: NDArray[numpy.int32],
+    target_regions: NDArray[numpy.int32],
+    nodal: NDArray[numpy.float64],
+    *,
+    points: bool,
+    blocks: bool,
+    threads: int,
+    callback: object | None,
+) -> dict:
     """
     Lay two meshes over each other: matrices (starts, columns, values) between points and between cells, moments of the pairs, loads of nodal values, and coverage.
     """
@@ -153,32 +242,277 @@ def supermesh3(source_points: Annotated[NDArray[numpy.float64], dict(shape=(None
 class SymmetricSystem:
     """A sparse symmetric positive semi-definite system."""
 
-    def __init__(self, starts: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], columns: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
-
-    def solve(self, rights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], starts: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], *, residual: float, max_steps: int) -> tuple:
+    def __init__(
+        self,
+        starts: NDArray[numpy.int64],
+        columns: NDArray[numpy.int32],
+        values: NDArray[numpy.float64],
+    ) -> None: ...
+    def solve(
+        self,
+        rights: NDArray[numpy.float64],
+        starts: NDArray[numpy.float64],
+        *,
+        residual: float,
+        max_steps: int,
+    ) -> tuple:
         """
         Solve for the rows of `rights`, from those of `starts`; returns (solutions, stop reasons, residuals).
         """
 
-def tet_qualities(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+class ShapeKind(enum.Enum):
+    smooth = 0
+
+    polyhedron = 1
+
+class DomainShape:
+    """What the facets of a geometry mean."""
+
+    def __init__(self) -> None: ...
+    @property
+    def kind(self) -> ShapeKind: ...
+    @kind.setter
+    def kind(self, arg: ShapeKind, /) -> None: ...
+    @property
+    def ridge_angle(self) -> float: ...
+    @ridge_angle.setter
+    def ridge_angle(self, arg: float, /) -> None: ...
+    @property
+    def frozen_tags(self) -> list[int]: ...
+    @frozen_tags.setter
+    def frozen_tags(self, arg: Sequence[int], /) -> None: ...
+
+class ConsistencyMode(enum.Enum):
+    off = 0
+
+    on = 1
+
+    pure = 2
+
+class ConsistencyParameters:
+    """Parameters of Algorithm 2."""
+
+    def __init__(self) -> None: ...
+    @property
+    def alpha_0(self) -> float: ...
+    @alpha_0.setter
+    def alpha_0(self, arg: float, /) -> None: ...
+    @property
+    def rho_0(self) -> float: ...
+    @rho_0.setter
+    def rho_0(self, arg: float, /) -> None: ...
+    @property
+    def sigma_0(self) -> float: ...
+    @sigma_0.setter
+    def sigma_0(self, arg: float, /) -> None: ...
+    @property
+    def gamma_0(self) -> float: ...
+    @gamma_0.setter
+    def gamma_0(self, arg: float, /) -> None: ...
+    @property
+    def delta(self) -> float: ...
+    @delta.setter
+    def delta(self, arg: float, /) -> None: ...
+    @property
+    def beta(self) -> float: ...
+    @beta.setter
+    def beta(self, arg: float, /) -> None: ...
+    @property
+    def candidates(self) -> int: ...
+    @candidates.setter
+    def candidates(self, arg: int, /) -> None: ...
+    @property
+    def max_growth(self) -> float: ...
+    @max_growth.setter
+    def max_growth(self, arg: float, /) -> None: ...
+
+class AgreementMode(enum.Enum):
+    off = 0
+
+    when_possible = 1
+
+    on = 2
+
+class HausdorffNumbers:
     """
-    Mean ratios (m, 3) of tetrahedra given by four points each: in the mean of the metrics, the same for a moving vertex, in the densest; -1 when flat.
+    Largest distances of curves and of surfaces from an edge, relative to its length.
     """
 
-def wide_graph(cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], n_points: int) -> tuple:
+    def __init__(self, *, curve: float, surface: float) -> None: ...
+
+class RemeshSettings:
+    """What a remesher is told; a bound that is not set is off."""
+
+    def __init__(self) -> None: ...
+    @property
+    def shape(self) -> DomainShape: ...
+    @shape.setter
+    def shape(self, arg: DomainShape, /) -> None: ...
+    @property
+    def hausdorff(self) -> HausdorffNumbers: ...
+    @hausdorff.setter
+    def hausdorff(self, arg: HausdorffNumbers, /) -> None: ...
+    @property
+    def max_vertices(self) -> int: ...
+    @max_vertices.setter
+    def max_vertices(self, arg: int, /) -> None: ...
+    @property
+    def max_seconds(self) -> float: ...
+    @max_seconds.setter
+    def max_seconds(self, arg: float, /) -> None: ...
+    @property
+    def agreement(self) -> AgreementMode: ...
+    @agreement.setter
+    def agreement(self, arg: AgreementMode, /) -> None: ...
+    @property
+    def consistency(self) -> ConsistencyMode: ...
+    @consistency.setter
+    def consistency(self, arg: ConsistencyMode, /) -> None: ...
+    @property
+    def parameters(self) -> ConsistencyParameters: ...
+    @parameters.setter
+    def parameters(self, arg: ConsistencyParameters, /) -> None: ...
+    @property
+    def seed(self) -> int: ...
+    @seed.setter
+    def seed(self, arg: int, /) -> None: ...
+    @property
+    def threads(self) -> int: ...
+    @threads.setter
+    def threads(self, arg: int, /) -> None: ...
+
+class StopReason(enum.Enum):
+    finished = 0
+
+    max_vertices = 1
+
+    max_seconds = 2
+
+class ConsistencyStop(enum.Enum):
+    none_yet = 0
+
+    consistent = 1
+
+    stalled = 2
+
+    max_growth = 3
+
+    max_rounds = 4
+
+    max_vertices = 5
+
+    max_seconds = 6
+
+class AgreementOutcome(enum.Enum):
+    off = 0
+
+    not_asked = 1
+
+    stopped_before = 2
+
+    varies_too_fast = 3
+
+    stopped = 4
+
+    done = 5
+
+class AgreementStop(enum.Enum):
+    agreed = 0
+
+    stalled = 1
+
+    rounds = 2
+
+    trials = 3
+
+    interrupted = 4
+
+class AgreementReport:
+    """What became of agreement."""
+
+    @property
+    def outcome(self) -> AgreementOutcome: ...
+    @property
+    def stopped_by(self) -> StopReason: ...
+    @property
+    def percent(self) -> int: ...
+    @property
+    def ln_gamma(self) -> float: ...
+    @property
+    def largest_ln_gamma(self) -> float: ...
+    @property
+    def stop(self) -> AgreementStop: ...
+    @property
+    def disagreeing(self) -> int: ...
+
+class CertifiedFractions:
+    @property
+    def simplex_ok(self) -> float: ...
+    @property
+    def star_ok(self) -> float: ...
+
+class RemeshResult:
+    """A new mesh, the metric at its points, and what happened."""
+
+    @property
+    def mesh(self) -> MeshArrays: ...
+    @property
+    def metric(self) -> NDArray[numpy.float64]: ...
+    @property
+    def statistics(self) -> dict[str, Any]: ...
+    @property
+    def kept_quality(self) -> float: ...
+    @property
+    def distortion(self) -> dict[str, float]: ...
+    @property
+    def agreement(self) -> AgreementReport: ...
+    @property
+    def consistency(self) -> dict[str, float]: ...
+    @property
+    def consistency_stop(self) -> ConsistencyStop: ...
+    @property
+    def certified(self) -> CertifiedFractions | None: ...
+    @property
+    def counts(self) -> dict[str, int]: ...
+    @property
+    def seconds(self) -> dict[str, float]: ...
+    @property
+    def stop_reason(self) -> StopReason: ...
+
+def remesh(
+    *,
+    mesh: MeshArrays,
+    metric: NDArray[numpy.float64],
+    geometry: MeshArrays,
+    settings: RemeshSettings,
+    project: object | None,
+    callback: object | None,
+) -> RemeshResult:
     """
-    The graph of the edges of a mesh and of the vertices opposite across facets; returns (offsets, neighbours).
+    A mesh of the geometry with unit edges in the metric that the mesh carries.
+    """
+
+def facet_shapes(
+    geometry: MeshArrays, shape: DomainShape
+) -> tuple[
+    NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]
+]:
+    """
+    Measure of the smooth shape at each facet, what it adds behind the facet, and how far it may lie from it; length of the smooth ridge at each edge.
     """
 
 class Surface3:
     """The smooth surfaces and ridges through given facets."""
 
-    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], facet_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], edges: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], edge_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], corners: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], ridge_angle: float) -> None: ...
-
-    def project(self, queries: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], tag: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]:
+    def __init__(self, geometry: MeshArrays, shape: DomainShape) -> None: ...
+    def project(
+        self, queries: NDArray[numpy.float64], tag: int
+    ) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]:
         """Feet of points on the surfaces with a tag, and unit normals there."""
 
-    def project_on_ridge(self, queries: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], tag: int | None) -> NDArray[numpy.float64]:
+    def project_on_ridge(
+        self, queries: NDArray[numpy.float64], tag: int | None
+    ) -> NDArray[numpy.float64]:
         """Feet of points on the ridges with a tag; None: those without one."""
 
     def ridges(self) -> NDArray[numpy.int32]:
@@ -188,6 +522,3 @@ class Surface3:
         """
         The (n, 3, 3) curvature tensors at the points: principal curvatures with their directions, of the most curved patch; zero off the surfaces.
         """
-
-def remesh3(points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cells: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], cell_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], facet_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], edges: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], edge_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], corners: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], metric: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], geometry_points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], geometry_facets: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], geometry_facet_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], geometry_edges: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], geometry_edge_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], frozen_tags: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], shape: dict, settings: dict, project: object | None, callback: object | None) -> dict:
-    """A tetrahedral mesh with unit edges in the metric given at its points."""

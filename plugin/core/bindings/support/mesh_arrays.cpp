@@ -1,10 +1,16 @@
 #include "bindings/support/mesh_arrays.h"
 #include "bindings/bind.h"
 
+#include <nanobind/stl/string.h>
+
 #include <type_traits>
 
 namespace anistar::bindings {
 namespace {
+
+std::string text_of(const nb::object &value) {
+  return nb::cast<std::string>(nb::str(value));
+}
 
 /// The array given under a name, as it is.
 template <class Array> Array array_of(const char *name, nb::handle given) {
@@ -14,10 +20,9 @@ template <class Array> Array array_of(const char *name, nb::handle given) {
     return array;
   const std::string dtype =
       std::is_same_v<typename Config::Scalar, const double> ? "float64" : "int32";
-  std::string found = nb::cast<std::string>(nb::str(given.type().attr("__name__")));
+  std::string found = text_of(given.type().attr("__name__"));
   if (nb::hasattr(given, "dtype") && nb::hasattr(given, "shape"))
-    found = nb::cast<std::string>(nb::str(given.attr("dtype"))) + " of shape " +
-            nb::cast<std::string>(nb::str(given.attr("shape")));
+    found = text_of(given.attr("dtype")) + " of shape " + text_of(given.attr("shape"));
   throw nb::type_error((std::string(name) + " must be a contiguous array of " + dtype +
                         " with " + std::to_string(Config::N) + " axes, got " + found)
                            .c_str());
