@@ -51,8 +51,9 @@ bool CellSwap::remove_edge(Index c, Index a, Index b) {
   double worst = 1;
   for (Index cell : shell_.all())
     worst = std::min(worst, volume_.quality_of(cell));
+  const double threshold = better_by(swap_gain, worst);
   for (std::size_t k = 0; k < shell_.n_ring(); ++k) {
-    if (!walls->admits_apex(k) || !is_ring_better(k, better_by(swap_gain, worst)))
+    if (!walls->admits_apex(k) || !is_ring_better(k, threshold))
       continue;
     if (operator_.replace(shell_.all(), shell_.ring[k], {a, b},
                           improvement(swap_gain, hausdorff_number_)))
