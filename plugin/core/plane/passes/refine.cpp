@@ -337,17 +337,14 @@ bool refine_blocks(Workspace &w, const Run &run, double radius, RefineCounts &co
   for (std::size_t n : n_new)
     slots.push_back(mesh.make_slots(n));
 
-  const auto caller = std::this_thread::get_id();
-  std::atomic<bool> stopped = !run.monitor.look(0);
+  StopSignal stop(!run.monitor.look(0));
   std::mutex counting;
   parallel_items(blocks.size(), run.threads, [&] {
     return [&, own = std::make_unique<Legaliser>(mesh),
             refinement = std::unique_ptr<Refinement>()](std::size_t k) mutable {
       if (!refinement)
         refinement = std::make_unique<Refinement>(w, *own);
-      if (std::this_thread::get_id() == caller && !run.monitor.look(0))
-        stopped = true;
-      if (stopped)
+      if (!stop.goes_on([&] { return run.monitor.look(0); }))
         return;
       VertexRange range = blocks[k];
       range.first_new = slots[k].vertex;
@@ -362,7 +359,7 @@ bool refine_blocks(Workspace &w, const Run &run, double radius, RefineCounts &co
       counts += refinement->take_counts();
     };
   });
-  return !stopped;
+  return !stop.is_stopped();
 }
 
 } // namespace
