@@ -4,6 +4,7 @@ A metric is an array (n, d, d) of symmetric positive definite tensors at the poi
 in 1 / length**2: an edge v should satisfy ``v^T M v = 1``.
 """
 
+from .base.mesh import MeshLike
 from .kernels.graph import mesh_edges
 from .laws.bounds import bounded
 from .laws.coarsening import limited_coarsening
@@ -15,7 +16,6 @@ from .laws.gradation import graded
 from .laws.implied import implied_metric
 from .laws.normalisation import normalised, normalised_space_time
 from .laws.refinement import limited_refinement
-from .mesh import MeshLike
 from .pipeline.from_fields import from_fields
 from .pipeline.from_instants import SpaceTimeLedger, from_instants
 from .pipeline.ledger import Ledger, Stage

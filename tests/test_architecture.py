@@ -48,9 +48,7 @@ PACKAGE_ROOMS = [
     {"cli"},
 ]
 METRIC_ROOMS = [
-    {"arrays"},
-    {"vectors"},
-    {"mesh"},
+    {"base"},
     {"kernels"},
     {"tensors"},
     {"laws", "recovery"},

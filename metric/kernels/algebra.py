@@ -16,7 +16,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from .elementary import exp, log
 from .spectra import compose, product, spectra
 

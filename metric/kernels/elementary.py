@@ -6,7 +6,7 @@ from typing import overload
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from . import compiled
 
 

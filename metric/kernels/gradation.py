@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
-from ..mesh import MeshLike
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from . import compiled, growth
 from . import graph as graphs
 from .graph import VertexGraph

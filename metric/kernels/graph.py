@@ -8,8 +8,8 @@ from itertools import combinations
 import numpy as np
 from scipy import sparse
 
-from ..arrays import Ints
-from ..mesh import MeshLike
+from ..base.arrays import Ints
+from ..base.mesh import MeshLike
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Floats, Ints, Longs
-from ..vectors import norms
+from ..base.arrays import Floats, Ints, Longs
+from ..base.vectors import norms
 from .algebra import determinant, eigh, lower_factor
 from .elementary import log
 from .graph import VertexGraph

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from . import compiled, simultaneous_reduction
 
 

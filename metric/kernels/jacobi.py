@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 
 MAX_SWEEPS = 24
 """Of Jacobi rotations; 4 to 6 are needed, with quadratic convergence at the end."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Bools, Floats
+from ..base.arrays import Bools, Floats
 from . import jacobi
 from .algebra import congruent, lower_factor
 from .spectra import compose, product

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..kernels.algebra import eigh
 from ..kernels.spectra import compose
 from ..tensors.checks import check_metric, check_result

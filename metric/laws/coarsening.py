@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.elementary import power
 from ..kernels.intersection import intersect
-from ..mesh import MeshLike
 from ..tensors.checks import check_metric_on, check_result
 from ..tensors.combination import check_step
 from .complexity import complexity

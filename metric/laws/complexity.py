@@ -6,10 +6,10 @@ from math import factorial
 
 import numpy as np
 
-from ..arrays import Floats, Ints
+from ..base.arrays import Floats, Ints
+from ..base.mesh import MeshLike, cell_volumes
 from ..kernels.algebra import log_determinant
 from ..kernels.elementary import exp
-from ..mesh import MeshLike, cell_volumes
 from ..tensors.checks import check_metric_on
 
 ELEMENTS_PER_COMPLEXITY = {2: 2.309, 3: 8.49}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.algebra import congruent, eigenvalues, lower_factor
 from ..kernels.elementary import log
 from ..kernels.graph import mesh_edges
-from ..mesh import MeshLike
 from ..tensors.checks import check_metric_on
 
 CANCELLED = 1e-10

@@ -7,10 +7,10 @@ from itertools import combinations
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike, cell_volumes, point_volumes
 from ..kernels.algebra import congruent, lower_factor
 from ..kernels.elementary import power
-from ..mesh import MeshLike, cell_volumes, point_volumes
 from ..tensors.checks import check_metric, check_tensors
 
 MEAN_SQUARE = {2: (7.0 / 1920.0, 2.0 / 1920.0), 3: (8.0 / 3360.0, 2.0 / 3360.0)}

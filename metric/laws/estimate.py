@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats, Ints
+from ..base.arrays import Floats, Ints
+from ..base.mesh import MeshLike, cell_volumes, point_volumes
 from ..kernels.algebra import determinant
 from ..kernels.graph import mesh_edges
-from ..mesh import MeshLike, cell_volumes, point_volumes
 from ..tensors.checks import check_metric_on
 from .complexity import REAL_ELEMENTS_PER_COMPLEXITY, complexity
 from .distortion import distortion, edge_lengths

@@ -8,12 +8,12 @@ from math import inf
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.elementary import log
 from ..kernels.gradation import grade, wide_graph
 from ..kernels.graph import VertexGraph
 from ..kernels.growth import Growth
-from ..mesh import MeshLike
 from ..tensors.checks import check_metric_on, check_result
 
 logger = logging.getLogger(__name__)

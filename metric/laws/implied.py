@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.algebra import determinant, exp_metric, log_metric
 from ..kernels.spectra import product
-from ..mesh import MeshLike
 from ..tensors.checks import check_result
 
 UNIT_SIMPLEX = {

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats, Ints
+from ..base.arrays import Floats, Ints
+from ..base.mesh import MeshLike, cell_volumes, diameter, point_volumes
 from ..kernels.algebra import eigh
 from ..kernels.elementary import exp, log, power
 from ..kernels.spectra import compose
-from ..mesh import MeshLike, cell_volumes, diameter, point_volumes
 from ..tensors.checks import MetricError, check_result, check_tensors
 from .bounds import Bound, check_bounds
 from .complexity import integral_of_exponential

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Bools, Floats
+from ..base.arrays import Bools, Floats
+from ..base.mesh import MeshLike
 from ..kernels.algebra import congruent, eigenvalues, eigh, lower_factor
 from ..kernels.pieces import pieces
 from ..kernels.spectra import compose, product
-from ..mesh import MeshLike
 from ..tensors.checks import check_metric_on, check_result
 from ..tensors.combination import check_step
 from .implied import implied_metric

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.algebra import absolute, eigh
 from ..kernels.elementary import power
 from ..kernels.graph import VertexGraph
@@ -15,7 +16,6 @@ from ..kernels.spectra import compose
 from ..laws.bounds import check_bounds
 from ..laws.error_model import predicted_error
 from ..laws.normalisation import SMALLEST_FLOOR
-from ..mesh import MeshLike
 from ..recovery import Samples, hessians_of_fields
 from ..tensors.combination import intersection_of
 from .options import MetricOptions

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike, cell_volumes, diameter
 from ..kernels.algebra import log_determinant
 from ..kernels.gradation import wide_graph
 from ..kernels.graph import VertexGraph
@@ -14,7 +15,6 @@ from ..kernels.growth import Growth
 from ..laws.bounds import check_bounds, clipped
 from ..laws.complexity import integral_of_exponential
 from ..laws.gradation import TOLERANCE, GrowthLaw, grade_on
-from ..mesh import MeshLike, cell_volumes, diameter
 from ..tensors.checks import check_result
 from .ledger import Stage
 from .options import MetricOptions

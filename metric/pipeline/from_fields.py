@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.algebra import absolute
 from ..laws.coarsening import coarsening_limited
 from ..laws.distortion import distortion
 from ..laws.estimate import estimate_with
 from ..laws.normalisation import SMALLEST_FLOOR, normalised
-from ..mesh import MeshLike
 from ..recovery import read_fields
 from ..tensors.combination import intersection_of
 from .field_hessians import FieldHessian, hessians_of

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.algebra import absolute
 from ..kernels.growth import Growth
 from ..laws.coarsening import coarsening_limited
 from ..laws.normalisation import SMALLEST_FLOOR, check_time_steps, normalised_space_time
-from ..mesh import MeshLike
 from ..recovery import read_fields
 from ..tensors.combination import intersection_of
 from .field_hessians import FieldHessian, hessians_of

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..laws.bounds import check_bounds
 from ..laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY
 from ..laws.gradation import DEFAULT_FACTORS, GrowthLaw

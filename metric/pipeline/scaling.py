@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..recovery import Samples
 
 Scale = str | float | Mapping[str, str | float]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..kernels.elementary import power
 from ..kernels.growth import Growth
 from ..laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY

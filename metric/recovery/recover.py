@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.graph import VertexGraph
-from ..mesh import MeshLike
 from .confidence import RecoveryConfidence
 from .methods.choice import (
     RecoveredHessian,

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from ..arrays import Floats, Ints
+from ..base.arrays import Floats, Ints
+from ..base.vectors import norms
 from ..kernels.algebra import eigh
 from ..kernels.elementary import angle_of, cosine
 from ..kernels.spectra import product
-from ..vectors import norms
 
 Places = NDArray[np.intp]
 

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..arrays import Floats, Ints
+from ..base.arrays import Floats, Ints
+from ..base.mesh import MeshLike, diameter
 from ..kernels.intersection import intersect
 from ..kernels.spectra import product
-from ..mesh import MeshLike, diameter
 from ..tensors.checks import check_result
 from .boundary_shape import BoundaryShape, curve_shape, surface_shape
 from .sizes import from_sizes

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..arrays import Floats
-from ..vectors import norms
+from ..base.arrays import Floats
+from ..base.vectors import norms
 
 Index = NDArray[np.intp]
 

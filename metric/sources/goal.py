@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.algebra import absolute, eigenvalues
 from ..laws.normalisation import normalised
-from ..mesh import MeshLike
 from ..recovery import recover_hessian
 from ..tensors.checks import check_tensors
 

@@ -6,14 +6,14 @@ import numpy as np
 import scipy  # loads scipy.optimize, 9 MB, when it is first used
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike, cell_volumes, diameter
 from ..kernels.algebra import absolute, eigh
 from ..kernels.elementary import exp, log, power
 from ..kernels.spectra import compose
 from ..laws.bounds import bounded
 from ..laws.complexity import complexity
 from ..laws.normalisation import SMALLEST_FLOOR, check_target
-from ..mesh import MeshLike, cell_volumes, diameter
 from ..tensors.checks import check_tensors
 
 LARGEST_STEP = 60.0

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike, diameter
+from ..base.vectors import norms
 from ..kernels.elementary import log
 from ..laws.gradation import GrowthLaw
-from ..mesh import MeshLike, diameter
-from ..vectors import norms
 from .distance import distance_to_facets
 
 

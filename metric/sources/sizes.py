@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..tensors.checks import check_result
 
 

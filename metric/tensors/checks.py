@@ -7,10 +7,10 @@ import logging
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.mesh import MeshLike
 from ..kernels.algebra import eigenvalues, eigh
 from ..kernels.spectra import compose
-from ..mesh import MeshLike
 
 logger = logging.getLogger(__name__)
 

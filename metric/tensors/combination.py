@@ -8,7 +8,7 @@ from functools import reduce
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..kernels.algebra import congruent, eigh, exp_metric, log_metric, lower_factor
 from ..kernels.intersection import intersect
 from ..kernels.spectra import compose, product

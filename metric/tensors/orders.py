@@ -19,7 +19,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 
 Order = Literal["medit", "mmg_api", "vtk", "xdmf", "omega_h", "underworld", "full"]
 

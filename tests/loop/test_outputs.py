@@ -15,7 +15,7 @@ from anistar.runs.series import write_series
 
 pytest.importorskip("matplotlib")
 
-from anistar.pictures import plane as pictures
+from anistar import pictures as pictures
 
 
 @dataclass(frozen=True)

@@ -158,7 +158,7 @@ def test_a_cylinder_is_resolved_around_and_not_along_and_its_rims_are_ridges():
     around = np.stack([-points[:, 1], points[:, 0], 0 * points[:, 2]], axis=1)[:n]
     np.testing.assert_allclose(size_along(M[:n], around), 2 * np.pi / 30, rtol=0.05)
     assert size_along(M[:n], np.tile([0.0, 0.0, 1.0], (n, 1))).min() > 2.0
-    np.testing.assert_allclose(np.linalg.eigvalsh(M[n]) ** -0.5, metric.mesh.diameter(mesh))
+    np.testing.assert_allclose(np.linalg.eigvalsh(M[n]) ** -0.5, metric.base.mesh.diameter(mesh))
 
 
 def test_curvature_may_be_asked_of_some_tags_only():

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...kernels.graph import pair_graph
 from ..patches.fit import Cloud, fit_patches
 from ..samples.cells import CellGeometry, boundary_facets

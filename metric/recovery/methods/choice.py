@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ..patches.fit import SMALLEST_PIVOT, Fits, covariances, fit_patches
 from ..patches.least_squares import LAST_PIVOT
 from ..patches.noise import (

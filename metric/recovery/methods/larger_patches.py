@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ..patches.fit import Fits, fit_patches
 from ..patches.noise import NOISE_MARGIN, hessian_norm
 from .setting import Setting

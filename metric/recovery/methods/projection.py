@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 from scipy import sparse
 
-from ...arrays import Bools, Floats
+from ...base.arrays import Bools, Floats
 from ...kernels.elementary import log
 from ...kernels.graph import pair_graph
 from ..patches.fit import SMALLEST_PIVOT, Cloud, fit_patches

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from ...arrays import Ints
+from ...base.arrays import Ints
 from ...kernels.graph import VertexGraph
 from ..patches.fit import Cloud
 from ..samples.cells import CellGeometry

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from ...arrays import Floats
+from ...base.arrays import Floats
+from ...base.mesh import MeshLike
 from ...kernels.gradation import wide_graph
 from ...kernels.graph import VertexGraph
-from ...mesh import MeshLike
 from ..options import EXTRAPOLATED, RecoveryOptions
 from ..patches.fit import PATCH_LEVELS, TRUSTED_LEVELS, Cloud
 from ..patches.noise import NOISE_GAIN, P2_NOISE_GAIN, WEAK_NOISE_GAIN

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import Floats, Ints
+from ...base.arrays import Floats, Ints
 from ..samples.cells import CellGeometry, boundary_sides
 
 

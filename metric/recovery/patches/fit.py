@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ...arrays import AnyArray, Bools, Floats, Ints
+from ...base.arrays import AnyArray, Bools, Floats, Ints
 from ...kernels.algebra import eigh
 from ...kernels.spectra import product
 from .least_squares import Equations, factored, gain, residual, solved

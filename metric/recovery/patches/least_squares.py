@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Floats, Ints
+from ...base.arrays import Floats, Ints
 
 LAST_PIVOT = 1e-8
 """No pivot is taken to be smaller: half of the digits are left. Also the last resort of a fit."""

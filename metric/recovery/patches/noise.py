@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...kernels.algebra import determinant, eigh, forward_substituted, lower_factor
 from ...kernels.elementary import power
 from ...kernels.spectra import compose, product

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ...arrays import Floats, Ints, Longs
+from ...base.arrays import Floats, Ints, Longs
+from ...base.mesh import MeshLike, point_volumes
 from ...kernels.spectra import product
-from ...mesh import MeshLike, point_volumes
 
 BLOCK = 32768
 """Cells treated at once, so that the arrays of a block stay in the cache."""

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from ...arrays import Bools, Floats, Ints
+from ...base.arrays import Bools, Floats, Ints
+from ...base.mesh import MeshLike
 from ...kernels.algebra import absolute, eigenvalues
-from ...mesh import MeshLike
 from ...tensors.combination import intersected
 
 Number = TypeVar("Number", np.int8, np.float64)

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...arrays import Floats, Ints
+from ...base.arrays import Floats, Ints
+from ...base.mesh import MeshLike
 from ...kernels.graph import mesh_edges
-from ...mesh import MeshLike
 from ...tensors.checks import check_values
 from .cells import CellGeometry
 from .cut_mesh import CutMesh

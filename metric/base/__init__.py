@@ -1,0 +1,1 @@
+"""What every room of the metric stands on: types of arrays, norms, what a mesh must have."""
