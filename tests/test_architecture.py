@@ -36,10 +36,10 @@ MADE_BY_COMMANDS = {"anistar-demo", "anistar-demo-3d", "build", "dist"}
 # The rooms of the package from the ground up, a line per storey: a room imports from itself and
 # from the storeys before its own. `__init__` and `__main__` are above all.
 PACKAGE_ROOMS = [
-    {"arguments", "errors", "memory", "metric", "processes", "telling"},
-    {"arrays", "atomic", "core_errors"},
+    {"metric"},
+    {"base"},
     {"meshes"},
-    {"formats", "report"},
+    {"formats"},
     {"judging", "transfer"},
     {"pictures", "remeshing"},
     {"loops"},

@@ -1,7 +1,7 @@
 """anistar: certified anisotropic Delaunay mesh adaptation for any PDE code."""
 
 from . import metric
-from .errors import FormatError, MeshingError
+from .base.errors import FormatError, MeshingError
 from .formats import read, write
 from .judging.certificate import Certificate, SimplexOfStar, certify, explain_star
 from .loops.adapt import Adapted, AdaptOptions, adapt

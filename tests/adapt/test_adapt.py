@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from meshes import annulus, cube, slit, square, two_regions
 
-from anistar.errors import MeshingError
+from anistar.base.errors import MeshingError
 from anistar.judging.interpolation_error import l2_error
 from anistar.loops.adapt import AdaptOptions, adapt
 from anistar.meshes.fields import Field

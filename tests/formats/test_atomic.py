@@ -8,8 +8,8 @@ import threading
 import pytest
 from meshes import square
 
-from anistar.atomic import all_replaced, remove_leftovers, replaced
-from anistar.errors import FormatError
+from anistar.base.atomic import all_replaced, remove_leftovers, replaced
+from anistar.base.errors import FormatError
 from anistar.formats import read, write
 
 
@@ -132,7 +132,7 @@ def test_a_disk_that_is_full_keeps_the_old_file(tmp_path):
     """As no file may grow beyond a few bytes: the error of a full disk, at the same place."""
     program = (
         "import resource, sys; from pathlib import Path\n"
-        "from anistar.atomic import replaced\n"
+        "from anistar.base.atomic import replaced\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (10, 10))\n"
         "with replaced(Path('a.txt')) as temporary:\n"
         "    temporary.write_text('x' * 100_000)\n"

@@ -3,7 +3,7 @@ import pytest
 from meshes import square, two_region_cube
 
 from anistar import formats
-from anistar.errors import FormatError
+from anistar.base.errors import FormatError
 
 HEAD = "MeshVersionFormatted 2\nDimension 2\n"
 POINTS = "Vertices\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"

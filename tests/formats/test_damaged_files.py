@@ -10,8 +10,8 @@ from foreign_files import gmsh_4
 from meshes import square, two_region_cube, two_regions
 
 from anistar import Field, formats
+from anistar.base.errors import FormatError
 from anistar.cli.main import main
-from anistar.errors import FormatError
 
 MEDIT = "MeshVersionFormatted 2\nDimension 2\n"
 VERTICES = "Vertices\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"

@@ -8,7 +8,7 @@ import pytest
 from meshes import square
 
 from anistar import formats
-from anistar.errors import FormatError
+from anistar.base.errors import FormatError
 from anistar.runs.file_solver import FileSolver
 
 HEAD = "MeshVersionFormatted 2\nDimension 2\n"

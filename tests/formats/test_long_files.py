@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from anistar import formats
-from anistar.errors import FormatError
+from anistar.base.errors import FormatError
 from anistar.formats.gmsh import reader as gmsh_reader
 from anistar.formats.parsing import rows
 

@@ -8,7 +8,7 @@ from foreign_files import GMSH, MESHIO, gmsh_4, sample, write_with_meshio
 from meshes import square, two_region_cube, two_regions
 
 from anistar import Field, Mesh, formats
-from anistar.errors import FormatError
+from anistar.base.errors import FormatError
 from anistar.meshes.validation import validate
 
 MAKERS = [two_regions, two_region_cube]

@@ -3,7 +3,7 @@ import pytest
 from meshes import annulus, rectangle_with_jitter, slit, square, two_region_cube, two_regions
 
 from anistar import formats
-from anistar.errors import FormatError
+from anistar.base.errors import FormatError
 from anistar.meshes.fields import Field, as_fields
 from anistar.meshes.mesh import Mesh
 from anistar.meshes.validation import validate

@@ -9,7 +9,7 @@ from contextlib import suppress
 
 import pytest
 
-from anistar.errors import FormatError
+from anistar.base.errors import FormatError
 from anistar.runs import lock
 from anistar.runs.lock import LOCK, TAKEOVER, locked
 
@@ -139,7 +139,7 @@ import os, sys, time
 from contextlib import suppress
 from pathlib import Path
 from anistar.runs import lock
-from anistar.errors import FormatError
+from anistar.base.errors import FormatError
 lock.fcntl = None
 folder, other = Path(sys.argv[1]), Path(sys.argv[1]) / "inside"
 (folder / f"ready_{sys.argv[2]}").touch()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from meshes import annulus, cube, square
 
-from anistar.errors import MeshingError
+from anistar.base.errors import MeshingError
 from anistar.judging.interpolation_error import interpolation_error
 from anistar.loops.adapt import AdaptOptions
 from anistar.loops.keeping import KeepOptions, needs_adaptation

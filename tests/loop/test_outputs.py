@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from meshes import cube, square
 
+from anistar.base.errors import FormatError
+from anistar.base.report import as_builtin, to_json, write_json
 from anistar.cli.expression import function_of_position
-from anistar.errors import FormatError
-from anistar.report import as_builtin, to_json, write_json
 from anistar.runs.series import write_series
 
 pytest.importorskip("matplotlib")

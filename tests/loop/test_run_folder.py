@@ -13,8 +13,8 @@ import pytest
 from meshes import square
 
 import anistar
+from anistar.base.errors import FormatError
 from anistar.cli import main
-from anistar.errors import FormatError
 from anistar.loops.loop import LoopOptions, adapt_loop
 from anistar.runs.folder import RunFolder
 

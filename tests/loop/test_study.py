@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from meshes import cube, square
 
-from anistar.errors import MeshingError
+from anistar.base.errors import MeshingError
 from anistar.loops.settling import Settled
 from anistar.loops.study import convergence_study, observed_order
 from anistar.meshes.validation import validate

@@ -7,7 +7,7 @@ import pytest
 from meshes import cube, square, two_regions
 from shapes import uniform
 
-from anistar.errors import MeshingError
+from anistar.base.errors import MeshingError
 from anistar.meshes.mesh import Mesh
 from anistar.metric import MetricError
 from anistar.remeshing.consistency_options import ConsistencyOptions

@@ -14,7 +14,7 @@ from meshes import square, two_regions
 from shapes import angles, arc_metric, fan, on_circle, on_clover, rotating_metric, uniform
 
 from anistar import RemeshOptions, remesh
-from anistar.errors import MeshingError
+from anistar.base.errors import MeshingError
 from anistar.meshes.validation import validate
 
 PHASES = ["curves", "size", "shape", "agreement", "certificate", "report"]

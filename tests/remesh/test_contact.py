@@ -5,7 +5,7 @@ import pytest
 from shapes import uniform
 
 from anistar import validate
-from anistar.errors import MeshingError
+from anistar.base.errors import MeshingError
 from anistar.meshes.mesh import Mesh
 from anistar.remeshing.contact import check_curves
 from anistar.remeshing.remesh import RemeshOptions, remesh

@@ -7,7 +7,7 @@ import pytest
 from meshes import square
 from shapes import angles, fan, on_circle, uniform
 
-from anistar.errors import MeshingError
+from anistar.base.errors import MeshingError
 from anistar.meshes.validation import validate
 from anistar.remeshing.remesh import RemeshOptions, remesh
 

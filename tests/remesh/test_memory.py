@@ -9,8 +9,8 @@ from meshes import cube, square
 from remesh3d import domains
 from shapes import angles, fan, on_circle, uniform
 
-from anistar import memory
-from anistar.errors import MeshingError
+from anistar.base import memory
+from anistar.base.errors import MeshingError
 from anistar.meshes.validation import validate
 from anistar.remeshing import demand
 from anistar.remeshing.remesh import RemeshOptions, remesh

@@ -9,9 +9,9 @@ from smooth_shapes import ball, bent_block
 
 import anistar
 from anistar import RemeshOptions, _core
+from anistar.base.telling import telling_once
 from anistar.meshes.mesh import Mesh
 from anistar.remeshing.fidelity import measures_of, smooth_shape
-from anistar.telling import telling_once
 
 
 def remeshed(mesh, h, options=None, **more):

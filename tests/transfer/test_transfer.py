@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshes import cube, rectangle_with_jitter, square
 
+from anistar.base.report import to_json
 from anistar.meshes.fields import Field
 from anistar.meshes.mesh import Mesh
 from anistar.meshes.topology import cell_volumes
-from anistar.report import to_json
 from anistar.transfer import TransferOptions, integral, transfer
 
 LINEAR = np.array([[1.5, -2.0, 0.25], [0.5, 3.0, -1.0]])

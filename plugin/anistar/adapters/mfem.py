@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats, Ints
+from ..base.arrays import Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants
 

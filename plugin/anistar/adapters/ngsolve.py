@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import AnyArray, Floats, Ints
+from ..base.arrays import AnyArray, Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Floats, Ints, Longs
+from ..base.arrays import Floats, Ints, Longs
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
 

@@ -14,8 +14,8 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from ..base.report import to_json
 from ..remeshing.report import RemeshReport
-from ..report import to_json
 from .streams import complain, readers_may_leave
 
 

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from ..adapters import dolfinx_wheel
+from ..base.report import attributes
 from ..loops.adapt import AdaptOptions, adapt
 from ..meshes.mesh import Mesh
 from ..meshes.validation import validate
 from ..metric import MetricOptions
-from ..report import attributes
 
 REQUIRED = ("numpy", "scipy", "meshio", "rich")
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 
 _NAMES = ("x", "y", "z")
 _CONSTANTS = {"pi": np.pi, "e": np.e}

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from ..errors import FormatError
+from ..base.errors import FormatError
 from ..formats import is_known
 from ..formats.suffixes import SOLUTION_OF, SOLUTIONS, solution_beside, suffix_of
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import NoReturn
 
-from ..errors import MeshingError
+from ..base.errors import MeshingError
 from .commands import (
     adapt,
     check,

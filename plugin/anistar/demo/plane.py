@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from .. import pictures
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.report import write_json
 from ..judging.interpolation_error import l2_norm
 from ..loops.adapt import AdaptOptions, adapt
 from ..loops.loop import Loop, Step, adapt_loop
@@ -20,7 +21,6 @@ from ..meshes.topology import cell_volumes
 from ..metric import MetricOptions
 from ..remeshing.options import RemeshOptions
 from ..remeshing.remesh import remesh
-from ..report import write_json
 from ..runs.series import write_series
 from ..transfer import transfer
 from .problem import EPSILON, channel, solve

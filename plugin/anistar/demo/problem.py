@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import Delaunay
 
-from ..arrays import AnyArray, Bools, Floats, Ints
+from ..base.arrays import AnyArray, Bools, Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import boundary_facets
 

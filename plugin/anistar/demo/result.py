@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..base.report import attributes
 from ..loops.loop import Loop
 from ..loops.study import observed_order
-from ..report import attributes
 
 REPORT = "report.json"
 

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.report import write_json
 from ..judging.interpolation_error import l2_error
 from ..loops.loop import Step, adapt_loop
 from ..loops.loop_options import LoopOptions
 from ..meshes.mesh import Mesh
 from ..remeshing.remesh import remesh
-from ..report import write_json
 from ..runs.series import write_series
 from .result import REPORT, Demo, DemoRow, order_of
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
-from ..atomic import replaced
-from ..errors import FormatError
+from ..base.arrays import Floats
+from ..base.atomic import replaced
+from ..base.errors import FormatError
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from . import inp_reader, meshio_writer, su2_reader, su2_writer, xdmf_reader

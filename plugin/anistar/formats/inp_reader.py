@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arrays import AnyArray
+from ..base.arrays import AnyArray
 from .content.raw import KIND_DIM, Block, RawMesh
 from .parsing.allowance import Allowance
 from .parsing.numbering import Numbering

@@ -11,7 +11,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from ..errors import FormatError
+from ..base.errors import FormatError
 from .content.raw import RawMesh
 from .content.tag_arrays import TAGS, refuse_reserved
 from .suffixes import suffix_of

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arrays import AnyArray, Floats
+from ..base.arrays import AnyArray, Floats
 from .content.raw import KIND_DIM, KIND_OF_DIM, REFUSED, Block, RawMesh, not_read
 from .parsing.reading import reading
 from .parsing.text_rows import integers, parsed

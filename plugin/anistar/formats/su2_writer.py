@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arrays import Ints
-from ..atomic import replaced
-from ..errors import FormatError
+from ..base.arrays import Ints
+from ..base.atomic import replaced
+from ..base.errors import FormatError
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from .parsing.text_rows import printed

@@ -15,7 +15,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ..arrays import AnyArray
+from ..base.arrays import AnyArray
 from .content.raw import Block, RawMesh
 from .content.tag_arrays import read_tagged
 from .parsing.rows import leading_rows

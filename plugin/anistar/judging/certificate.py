@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arrays import Bools, Floats
-from ..core_errors import meshing_errors
+from ..base.arrays import Bools, Floats
+from ..base.core_errors import meshing_errors
+from ..base.report import as_builtin, attributes
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
 from ..metric.kernels.algebra import solved
-from ..report import as_builtin, attributes
 
 Count = tuple[int, int]
 """How many, of how many."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .. import _core
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..meshes.mesh import Mesh
 from ..meshes.mesh_arrays import mesh_arrays
 

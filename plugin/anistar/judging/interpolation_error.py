@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes
 from ..metric.recovery import hessian_and_noise

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats, Ints
+from ..base.arrays import Floats, Ints
+from ..base.report import attributes
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes, unique_edges
 from ..metric import check_metric
 from ..metric.kernels.algebra import lower_factor
 from ..metric.kernels.elementary import log, power
-from ..report import attributes
 
 #: Bounds of the length of a unit edge.
 UNIT = (1 / math.sqrt(2), math.sqrt(2))

@@ -9,9 +9,11 @@ from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
-from ..arguments import require
-from ..arrays import Floats
-from ..errors import MeshingError
+from ..base.arguments import require
+from ..base.arrays import Floats
+from ..base.errors import MeshingError
+from ..base.report import attributes
+from ..base.telling import telling_once
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric import Ledger, MetricOptions, from_fields
@@ -20,8 +22,6 @@ from ..remeshing.options import RemeshOptions
 from ..remeshing.project import Project
 from ..remeshing.remesh import Remeshed, remesh
 from ..remeshing.report import RemeshReport
-from ..report import attributes
-from ..telling import telling_once
 from ..transfer import TransferOptions, TransferReport, transfer
 from .aliases import canonical
 

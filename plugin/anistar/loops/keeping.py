@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..arguments import require
-from ..arrays import Floats
+from ..base.arguments import require
+from ..base.arrays import Floats
 from ..judging.quality import UNIT, metric_lengths
 from ..meshes.mesh import Mesh
 from ..meshes.topology import unique_edges

@@ -11,16 +11,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import require
-from ..arrays import Floats
-from ..errors import MeshingError
+from ..base.arguments import require
+from ..base.arrays import Floats
+from ..base.errors import MeshingError
+from ..base.report import Reportable, as_builtin
+from ..base.telling import telling_once
 from ..judging.interpolation_error import interpolation_error
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
-from ..report import Reportable, as_builtin
-from ..telling import telling_once
 from .adapt import AdaptOptions, AdaptReport, Wanted, adapt_to, metric_field_names, metric_for
 from .keeping import needs_adaptation
 from .loop_options import GROWTH, LoopOptions

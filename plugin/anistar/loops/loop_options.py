@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..arguments import require
+from ..base.arguments import require
 from ..meshes.mesh import Mesh
 from .adapt import AdaptOptions
 from .keeping import KeepOptions

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from ..base.report import as_builtin, attributes, write_json, write_text
 from ..judging.interpolation_error import ExactFunction, l2_error
 from ..meshes.fields import as_fields
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes
 from ..metric.kernels.elementary import log, power
 from ..remeshing.remesh import remesh
-from ..report import as_builtin, attributes, write_json, write_text
 from .adapt import AdaptOptions
 from .loop import Solve, Step, adapt_loop
 from .loop_options import LoopOptions

@@ -11,9 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import require
-from ..arrays import Floats
-from ..errors import MeshingError
+from ..base.arguments import require
+from ..base.arrays import Floats
+from ..base.errors import MeshingError
+from ..base.report import attributes
+from ..base.telling import telling_once
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric import from_fields
@@ -21,8 +23,6 @@ from ..metric.pipeline.scaling import Scale, scale_of
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
 from ..remeshing.remesh import remesh
-from ..report import attributes
-from ..telling import telling_once
 from ..transfer import TransferOptions, transfer
 from .adapt import AdaptOptions, metric_field_names
 from .keeping import KeepOptions, needs_adaptation

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import AnyArray
+from ..base.arrays import AnyArray
 
 if TYPE_CHECKING:
     from .mesh import Mesh

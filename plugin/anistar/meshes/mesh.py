@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import AnyArray, Floats, Ints
+from ..base.arrays import AnyArray, Floats, Ints
 from .topology import FacetTable, facet_table
 from .violations import (
     Violation,

@@ -17,7 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from .. import _core
-from ..arrays import Bools, Floats, Ints, Longs
+from ..base.arrays import Bools, Floats, Ints, Longs
 from ..metric.kernels.elementary import angle_of
 from .topology import RowKeys, facet_normals, vector_lengths
 

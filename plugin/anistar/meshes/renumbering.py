@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from ..arrays import AnyArray, Floats
+from ..base.arrays import AnyArray, Floats
 from .fields import Field
 from .mesh import Mesh
 from .topology import vector_lengths

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Ints, Longs
+from ..base.arrays import Floats, Ints, Longs
 
 LOCAL_FACETS = {
     2: np.array([[1, 2], [2, 0], [0, 1]]),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import AnyArray, Bools, Floats, Ints, Longs
+from ..base.arrays import AnyArray, Bools, Floats, Ints, Longs
 from . import overlap
 from .topology import (
     LOCAL_FACETS,

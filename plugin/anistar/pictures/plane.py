@@ -10,8 +10,8 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
-from ..atomic import replaced
+from ..base.arrays import Floats
+from ..base.atomic import replaced
 from ..judging.certificate import Certificate
 from ..meshes.mesh import Mesh
 from ..meshes.topology import unique_edges

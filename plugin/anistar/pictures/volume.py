@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..meshes.mesh import Mesh
 from ..meshes.topology import boundary_facets
 from .plane import INK, Target

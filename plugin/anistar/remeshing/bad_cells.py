@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..judging.quality import mean_ratios
 from ..meshes.mesh import Mesh
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..errors import MeshingError
+from ..base.errors import MeshingError
 from ..meshes.mesh import Mesh
 from ..meshes.overlap import coincident_points, crossing_facets, doubled_cell, touching_point
 from .report import RemeshReport

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats, Ints
-from ..errors import MeshingError
-from ..memory import available_memory
+from ..base.arrays import Floats, Ints
+from ..base.errors import MeshingError
+from ..base.memory import available_memory
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes
 from ..metric import MetricOptions, complexity

@@ -10,8 +10,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from .. import _core
-from ..arrays import Floats, Ints, Longs
-from ..errors import MeshingError
+from ..base.arrays import Floats, Ints, Longs
+from ..base.errors import MeshingError
 from ..meshes.mesh import Mesh
 from ..meshes.mesh_arrays import mesh_arrays
 from ..meshes.topology import (

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..judging.quality import metric_lengths
 from ..meshes.mesh import Mesh
 from ..meshes.topology import unique_edges

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
-from ..errors import MeshingError
+from ..base.arrays import Floats
+from ..base.errors import MeshingError
 from ..meshes.mesh import Mesh
 
 Project = Callable[[Floats, int], ArrayLike]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
+from ..base.telling import tell
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..metric import MetricError, exp_metric, log_metric
 from ..metric.laws.refinement import Refinement, refinement_limited
-from ..telling import tell
 from ..transfer import TransferOptions, transfer
 
 

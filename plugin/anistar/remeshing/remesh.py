@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arguments import require
-from ..arrays import Floats, Ints
-from ..core_errors import meshing_errors
+from ..base.arguments import require
+from ..base.arrays import Floats, Ints
+from ..base.core_errors import meshing_errors
+from ..base.telling import tell
 from ..meshes.mesh import Mesh
 from ..meshes.mesh_arrays import mesh_arrays
 from ..metric import check_metric
-from ..telling import tell
 from .contact import check_curves, check_surfaces
 from .demand import check_demand
 from .fidelity import smooth_shape, surface_deviations, tag_measures

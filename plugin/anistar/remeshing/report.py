@@ -7,7 +7,7 @@ from typing import Any
 
 from .. import _core
 from .._core import ConsistencyStop, StopReason
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..meshes.mesh import Mesh
 from ..metric.laws.refinement import Refinement
 from .agreement import agreement_text

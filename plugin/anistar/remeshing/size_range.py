@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
+from ..base.arrays import Floats
 from ..meshes.mesh import Mesh
 from ..metric import MetricError
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..errors import FormatError
+from ..base.errors import FormatError
 from ..formats import read_with_report, write
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh

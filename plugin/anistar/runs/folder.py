@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import FormatError
+from ..base.errors import FormatError
+from ..base.report import as_builtin, write_json
 from ..formats import read, write
 from ..loops.loop import Loop, Step
-from ..report import as_builtin, write_json
 from .file_solver import FILE_KINDS, exchanged_files
 from .lock import locked
 from .own_files import OwnFiles

@@ -12,7 +12,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..errors import FormatError
+from ..base.errors import FormatError
+from ..base.report import write_text
 from ..formats import read
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
@@ -23,7 +24,6 @@ from ..pictures import (
     solution_picture,
     volume_picture,
 )
-from ..report import write_text
 from .folder import REPORT, SERIES
 from .series import member
 

@@ -9,8 +9,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
-from ..errors import FormatError
-from ..processes import is_running
+from ..base.errors import FormatError
+from ..base.processes import is_running
 
 try:
     import fcntl

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from ..atomic import remove_leftovers
-from ..errors import FormatError
+from ..base.atomic import remove_leftovers
+from ..base.errors import FormatError
 
 # What an error lists by name; the others are counted.
 LISTED = 3

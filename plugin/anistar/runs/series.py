@@ -10,10 +10,10 @@ from xml.sax.saxutils import quoteattr
 
 from numpy.typing import ArrayLike
 
+from ..base.report import write_text
 from ..formats import write
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
-from ..report import write_text
 
 Item = tuple[Mesh, Mapping[str, Field | ArrayLike]]
 

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..arrays import Floats, Ints
+from ..base.arrays import Floats, Ints
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from .location import Places, located_nodes, located_points

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from ..arrays import Bools, Floats, Ints
+from ..base.arrays import Bools, Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants, vector_lengths
 from .options import TransferOptions

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arrays import AnyArray, Floats, Ints, Longs
+from ..base.arrays import AnyArray, Floats, Ints, Longs
 from ..meshes.mesh import Mesh
 from ..metric import check_metric, interpolated
 from .location import Places, located_coordinates

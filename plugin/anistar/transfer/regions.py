@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Ints
+from ..base.arrays import Floats, Ints
 from ..meshes.mesh import Mesh
 
 _log = logging.getLogger(__name__)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ..report import as_builtin
+from ..base.report import as_builtin
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 
-from ..arguments import require
-from ..arrays import Floats
+from ..base.arguments import require
+from ..base.arrays import Floats
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from .interpolation import Interpolator

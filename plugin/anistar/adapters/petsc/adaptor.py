@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...meshes.mesh import Mesh
 from ...metric import graded
 from ...remeshing.options import RemeshOptions

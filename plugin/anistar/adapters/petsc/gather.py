@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from .library import PETSc
 
 

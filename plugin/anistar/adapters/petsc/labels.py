@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Bools, Ints, Longs
+from ...base.arrays import Bools, Ints, Longs
 from ...meshes.mesh import Mesh
 from .library import PETSc
 from .strata import Strata

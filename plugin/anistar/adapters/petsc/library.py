@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Longs
+from ...base.arrays import Longs
 from .. import dolfinx_wheel
 
 dolfinx_wheel.make_importable()

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Floats, Ints, Longs
+from ...base.arrays import Floats, Ints, Longs
 from ...meshes.mesh import Mesh
 from ...meshes.topology import cell_determinants
 from .labels import Labelling, Pair, PlexLabels, read_labels, tags_of_sets, write_label

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import AnyArray, Longs
+from ...base.arrays import AnyArray, Longs
 from ...meshes.topology import RowKeys
 from .library import cones
 

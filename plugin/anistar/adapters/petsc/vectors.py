@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from .library import PETSc
 
 

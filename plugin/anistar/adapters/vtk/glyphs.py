@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
-from ...arrays import Floats, Longs
+from ...base.arrays import Floats, Longs
 from ...meshes.mesh import Mesh
 from ...metric import check_metric
 

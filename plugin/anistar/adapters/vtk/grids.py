@@ -18,7 +18,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray,
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ...formats.content.assembly import assembled
 from ...formats.content.export import exported
 from ...formats.content.raw import RawMesh

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...formats import ReadReport, read, read_metric, read_with_report, write
 from ...judging.cell_arrays import cell_arrays
 from ...judging.certificate import Certificate, certify

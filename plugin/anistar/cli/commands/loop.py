@@ -6,13 +6,13 @@ import argparse
 from contextlib import suppress
 from typing import Any
 
-from ...errors import FormatError
+from ...base.errors import FormatError
+from ...base.report import as_builtin
 from ...formats import read
 from ...loops.loop import Loop, LoopError, Step, adapt_loop
 from ...loops.loop_options import LoopOptions
 from ...meshes.mesh import Mesh
 from ...remeshing.demand import check_targets
-from ...report import as_builtin
 from ...runs.file_solver import FILE_KINDS, FileSolver
 from ...runs.folder import RunFolder
 from .. import console

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...formats import read, write_metric
 from ...loops.adapt import metric_field_names
 from ...meshes.mesh import Mesh

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ...metric import MetricOptions, dwr_metric, goal_metric, recover_hessian

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...formats import read_metric
 from ...meshes.mesh import Mesh
 from ...metric import (

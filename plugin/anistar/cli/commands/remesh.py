@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ...errors import FormatError
+from ...base.errors import FormatError
 from ...formats import METRIC, read, read_metric, write, write_metric
 from ...formats.suffixes import SOLUTION_OF, solution_beside, suffix_of
 from ...meshes.fields import Field

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import AnyArray
-from ...errors import FormatError
+from ...base.arrays import AnyArray
+from ...base.errors import FormatError
 from ...meshes.fields import Field, Kind
 from ...meshes.mesh import Mesh
 from ...meshes.violations import point_violations, volume_signs

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from .raw import KIND_OF_DIM, Block, RawMesh

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from ...arrays import AnyArray, Floats
+from ...base.arrays import AnyArray, Floats
 
 KIND_DIM = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
 KIND_OF_DIM = {dim: kind for kind, dim in KIND_DIM.items()}

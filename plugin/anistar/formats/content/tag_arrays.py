@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import AnyArray
-from ...errors import FormatError
+from ...base.arrays import AnyArray
+from ...base.errors import FormatError
 from ..parsing.reading import reading
 from .notes import Names, names_of, note_of
 from .raw import RawMesh

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ..content.notes import labels_of, note_of
 from ..content.raw import RawMesh
 from ..parsing.allowance import Allowance

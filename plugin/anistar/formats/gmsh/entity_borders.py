@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import AnyArray, Floats
+from ...base.arrays import AnyArray, Floats
 from ..content.raw import Block, RawMesh
 
 # Pieces that meet at a smaller angle go on smoothly: the tangent of half of 5 degrees.

@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ..content.notes import Names
 from ..content.raw import RawMesh, not_read
 from ..parsing.allowance import Allowance

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ..parsing.cursor import Cursor, Order
 from ..parsing.rows import leading_rows
 from ..parsing.text_rows import integers, parsed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ..parsing.rows import leading_rows
 from .elements import Elements, kind_and_width
 from .streams import BinaryStream, Stream, TextStream

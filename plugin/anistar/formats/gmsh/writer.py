@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import AnyArray
-from ...atomic import replaced
-from ...errors import FormatError
+from ...base.arrays import AnyArray
+from ...base.atomic import replaced
+from ...base.errors import FormatError
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ..content.export import exported, padded

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import AnyArray
-from ...atomic import all_replaced, replaced
-from ...errors import FormatError
+from ...base.arrays import AnyArray
+from ...base.atomic import all_replaced, replaced
+from ...base.errors import FormatError
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ...metric.tensors.orders import to_components

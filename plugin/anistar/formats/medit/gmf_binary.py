@@ -12,7 +12,7 @@ import struct
 
 import numpy as np
 
-from ...errors import FormatError
+from ...base.errors import FormatError
 from ..parsing.cursor import Cursor
 from .gmf_container import (
     ENTITIES,

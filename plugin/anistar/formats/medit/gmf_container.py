@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Floats, Longs
+from ...base.arrays import Floats, Longs
 
 # keyword -> (code, integers in a row); Vertices and SolAt* have their own layout.
 ENTITIES = {

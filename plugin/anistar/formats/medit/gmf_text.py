@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Floats, Longs
+from ...base.arrays import Floats, Longs
 from ..content.notes import note_of
 from ..parsing.text_rows import integers, parsed, printed
 from .gmf_container import (

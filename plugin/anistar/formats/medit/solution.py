@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ...metric.tensors.orders import from_components
 from ..content.notes import fields_of
 from .gmf_container import Container, columns_of

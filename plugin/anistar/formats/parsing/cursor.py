@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 
 Order = Literal["<", ">"]
 _BLANKS = b" \t\r\n"

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ...errors import FormatError
+from ...base.errors import FormatError
 
 # What NumPy, json and the decompressors raise on damaged content that no check of ours names.
 _DAMAGE = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 
 _FIRST_LOOK = 16
 

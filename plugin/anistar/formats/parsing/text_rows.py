@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 from numpy.typing import DTypeLike
 
-from ...arrays import AnyArray, Floats, Longs
+from ...base.arrays import AnyArray, Floats, Longs
 
 
 def printed(*columns: AnyArray) -> str:

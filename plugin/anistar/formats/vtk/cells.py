@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ..content.raw import KIND_DIM, REFUSED, Block
 
 KINDS = {

@@ -7,7 +7,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from .legacy_numbers import LegacyNumbers
 
 _FIXED_WIDTHS = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ..parsing.cursor import Cursor
 from ..parsing.text_rows import parsed
 

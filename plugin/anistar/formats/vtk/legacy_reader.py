@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ..content.raw import RawMesh, not_read
 from ..content.tag_arrays import TAGS, read_tagged
 from ..parsing.cursor import Cursor

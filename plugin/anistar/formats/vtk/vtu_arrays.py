@@ -16,7 +16,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ..parsing.allowance import Allowance
 from ..parsing.cursor import Order
 from ..parsing.text_rows import parsed

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ...arrays import AnyArray
+from ...base.arrays import AnyArray
 from ..content.raw import Block, RawMesh, not_read
 from ..content.tag_arrays import NAMES, TAGS, decoded_names, read_tagged
 from ..parsing.xml_tree import attribute, count, only_child, root_of

@@ -16,8 +16,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from ...arrays import AnyArray
-from ...atomic import replaced
+from ...base.arrays import AnyArray
+from ...base.atomic import replaced
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ..content.export import exported

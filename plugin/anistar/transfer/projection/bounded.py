@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...arrays import Floats, Ints
+from ...base.arrays import Floats, Ints
 from ...meshes.mesh import Mesh
 from ..values.measure import weighted_sums
 from .intersection import Supermesh

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import bsr_array, csr_array
 
 from ... import _core
-from ...arrays import Bools, Floats
+from ...base.arrays import Bools, Floats
 from ...meshes.mesh import Mesh
 from ...meshes.topology import cell_volumes
 from ..regions import Regions, common_regions, sums_by_region

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
-from ...arrays import Bools, Floats, Ints
+from ...base.arrays import Bools, Floats, Ints
 from ...meshes.mesh import Mesh
 from ...meshes.topology import cell_volumes
 from .intersection import Supermesh

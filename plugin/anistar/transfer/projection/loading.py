@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ..options import TransferOptions

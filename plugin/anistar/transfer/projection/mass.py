@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 
-from ...arrays import Floats, Ints
+from ...base.arrays import Floats, Ints
 from ...meshes.mesh import Mesh
 from ...meshes.topology import cell_volumes
 from .symmetric_system import SymmetricSystem

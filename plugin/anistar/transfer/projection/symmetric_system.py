@@ -6,8 +6,8 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ... import _core
-from ...arrays import Floats
-from ...errors import MeshingError
+from ...base.arrays import Floats
+from ...base.errors import MeshingError
 
 RESIDUAL = 1e-15
 # What round-off may leave of the residual when the steps end.

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...meshes.fields import Field
 from ...metric.kernels.algebra import eigenvalues, exp_metric, log_metric
 

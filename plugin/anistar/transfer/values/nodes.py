@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from ...arrays import Floats
+from ...base.arrays import Floats
 from ...meshes.mesh import Mesh
 
 

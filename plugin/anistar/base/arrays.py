@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .metric.base.arrays import AnyArray, Bools, Floats, Ints, Longs
+from ..metric.base.arrays import AnyArray, Bools, Floats, Ints, Longs
 
 __all__ = ["AnyArray", "Bools", "Floats", "Ints", "Longs"]
