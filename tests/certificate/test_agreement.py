@@ -1,4 +1,4 @@
-"""Phases 4 to 6 of remesh: agreement, the star check and Algorithm 2."""
+"""Agreement, the mending of stars and Algorithm 2, as remesh does them."""
 
 import dataclasses
 

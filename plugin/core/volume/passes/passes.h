@@ -14,7 +14,8 @@ struct VolumeCounts {
   VolumeCounts &operator+=(const VolumeCounts &other);
 };
 
-/// Those that look only at the cells and vertices that changed since they last ran.
+/// The passes that look only at the cells and vertices that changed since they last
+/// ran.
 enum class Pass { split, swap, vertex, polish };
 
 /// What the passes over one mesh leave to those that follow.

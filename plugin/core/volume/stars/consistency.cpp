@@ -7,7 +7,6 @@
 #include "volume/stars/star_mending.h"
 #include "volume/stars/vertex_mover.h"
 
-#include <optional>
 #include <utility>
 
 namespace anistar {
@@ -28,7 +27,7 @@ constexpr double any_progress = .995;
 constexpr double many_failing = .3;
 constexpr std::size_t few_failing = 100;
 /// While at most this part of the cells fails, what the rules hardly improve goes
-/// through agreement and the star check again, that many rounds later at the earliest:
+/// through agreement and mending again, that many rounds later at the earliest:
 /// they swap facets of surfaces, remove vertices and let them wander, which the rules
 /// do not, and a facet costs them far less than a cavity. With more patience than the
 /// first time.
