@@ -14,36 +14,36 @@ namespace anistar {
 
 /// As far as the metric, the settings and the budgets let them.
 ///
-/// @tparam Mesh what a dimension adds: `d`; plan(settings): what is to become of
+/// @tparam Stars what a dimension adds: `d`; plan(settings): what is to become of
 /// agreement, `done` where it is to be made; agree(); is_certified(settings, agreement)
 /// and is_mended(agreement); certify(): the answers for all cells, none when it was cut
 /// short; mend(known); refine(settings, known): consistency; mesh()
-template <class Mesh>
-void certify_stars(Mesh &mesh, const Run &run, const RemeshSettings &settings,
-                   Stopwatch &watch, RemeshResult<Mesh::d> &out) {
+template <class Stars>
+void certify_stars(Stars &stars, const Run &run, const RemeshSettings &settings,
+                   Stopwatch &watch, RemeshResult<Stars::d> &out) {
   watch.phase("agreement");
   AgreementReport &agreement = out.agreement;
-  agreement = mesh.plan(settings);
+  agreement = stars.plan(settings);
   if (agreement.outcome == AgreementOutcome::done) {
-    agreement.counts = mesh.agree();
+    agreement.counts = stars.agree();
     agreement.stopped_by = run.monitor.reason();
     if (run.is_stopped())
       agreement.outcome = AgreementOutcome::stopped;
   }
-  if (!mesh.is_certified(settings, agreement))
+  if (!stars.is_certified(settings, agreement))
     return;
   watch.phase("certificate");
-  std::optional<DelaunayBits> known = mesh.certify();
+  std::optional<DelaunayBits> known = stars.certify();
   if (!known)
     return;
-  out.stars.failures = failing_cells(mesh.mesh(), known->bits).size();
-  if (mesh.is_mended(agreement))
-    out.stars.moves = mesh.mend(*known);
+  out.stars.failures = failing_cells(stars.mesh(), known->bits).size();
+  if (stars.is_mended(agreement))
+    out.stars.moves = stars.mend(*known);
   if (settings.consistency != ConsistencyMode::off) {
     watch.phase("consistency");
-    out.consistency = mesh.refine(settings, *known);
+    out.consistency = stars.refine(settings, *known);
   }
-  out.stars.certified = certified_fractions(mesh.mesh(), known->bits);
+  out.stars.certified = certified_fractions(stars.mesh(), known->bits);
 }
 
 } // namespace anistar

@@ -153,8 +153,10 @@ insert_until_consistent(Rounds &rounds, const Run &run,
     rounds.note(failing, best->failing);
     if (rounds.is_starting())
       may_grow_from_here();
-    if (rounds.is_starting() || failing < best->failing)
-      best.emplace(seen(failing));
+    if (rounds.is_starting() || failing < best->failing) {
+      best.reset(); // before the copy is made: a mesh is large
+      best = seen(failing);
+    }
   }
   if (failing > best->failing) {
     rounds.restore(std::move(best->mesh));

@@ -10,7 +10,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <span>
 
 namespace anistar {
 
@@ -170,7 +169,6 @@ public:
   [[nodiscard]] double minimum() const { return minimum_; }
   [[nodiscard]] double sum() const { return sum_; }
   [[nodiscard]] float quality(std::size_t k) const { return quality_[k]; }
-  [[nodiscard]] std::span<const float> qualities() const { return {quality_, n_}; }
 
 private:
   std::size_t n_ = 0;

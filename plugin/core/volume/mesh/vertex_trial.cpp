@@ -30,7 +30,7 @@ bool VertexTrial::gather(Index v, std::span<const Index> star) {
   const Triangulation<3> &mesh = volume_.mesh;
   v_ = v;
   star_ = star;
-  at_ = {mesh.vertex(v), mesh.background_cell[v]};
+  at_ = mesh.vertex(v);
   least_before_ = 1;
   sum_before_ = 0;
   shapes_.clear();
@@ -45,29 +45,29 @@ bool VertexTrial::gather(Index v, std::span<const Index> star) {
 }
 
 void VertexTrial::place(const Vector<3> &x) {
-  at_.vertex.x = volume_.surface.place(volume_.feature(v_), volume_.support_of(v_), x);
+  at_.x = volume_.surface.place(volume_.feature(v_), volume_.support_of(v_), x);
 }
 
 bool VertexTrial::keeps_surfaces() const {
   return volume_.feature(v_) == Triangulation<3>::interior ||
-         anistar::keeps_surfaces(volume_, star_, v_, at_.vertex.x, hausdorff_number_);
+         anistar::keeps_surfaces(volume_, star_, v_, at_.x, hausdorff_number_);
 }
 
 void VertexTrial::take_metric() {
-  at_.background_cell = volume_.mesh.background_cell[v_];
-  at_.vertex = volume_.background.vertex(at_.vertex.x, at_.background_cell);
+  background_cell_ = volume_.mesh.background_cell[v_];
+  at_ = volume_.background.vertex(at_.x, background_cell_);
 }
 
 const StarShapes &VertexTrial::measure() {
-  shapes_.evaluate(at_.vertex);
+  shapes_.evaluate(at_);
   return shapes_;
 }
 
-void VertexTrial::commit(const VertexPlace &place, std::span<const float> qualities) {
-  volume_.mesh.vertex(v_) = place.vertex;
-  volume_.mesh.background_cell[v_] = place.background_cell;
+void VertexTrial::commit() {
+  volume_.mesh.vertex(v_) = at_;
+  volume_.mesh.background_cell[v_] = background_cell_;
   for (std::size_t k = 0; k < star_.size(); ++k) {
-    volume_.quality[star_[k]] = qualities[k];
+    volume_.quality[star_[k]] = shapes_.quality(k);
     volume_.touch(star_[k]);
   }
 }

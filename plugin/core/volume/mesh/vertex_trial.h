@@ -53,12 +53,6 @@ template <class Seen>
   return weight > 0 ? Vector<3>(step / weight) : step;
 }
 
-/// Where a vertex may be: with its metric, and where that was found.
-struct VertexPlace {
-  Vertex<3> vertex{};
-  Index background_cell = none;
-};
-
 class VertexTrial {
 public:
   /// @param hausdorff_number of curved surfaces, relative to an edge
@@ -75,7 +69,7 @@ public:
   /// Tries x, or where x goes on the surface or ridge of the vertex.
   void place(const Vector<3> &x);
   /// Whether all cells have a volume there, up to round-off.
-  [[nodiscard]] bool is_positive() const { return shapes_.are_positive(at_.vertex.x); }
+  [[nodiscard]] bool is_positive() const { return shapes_.are_positive(at_.x); }
   /// Whether the facets of surfaces keep their side, and stay near curved ones.
   [[nodiscard]] bool keeps_surfaces() const;
   /// Finds the metric there.
@@ -83,13 +77,10 @@ public:
   /// Finds the shapes of the cells there. @pre the metric was taken
   const StarShapes &measure();
   /// Where it is tried; the address stays the same.
-  [[nodiscard]] const Vertex<3> &vertex() const { return at_.vertex; }
-  [[nodiscard]] const VertexPlace &at() const { return at_; }
+  [[nodiscard]] const Vertex<3> &vertex() const { return at_; }
 
   /// Moves the vertex of the mesh there. @pre the shapes were measured
-  void commit() { commit(at_, shapes_.qualities()); }
-  /// The same for a place that was tried before.
-  void commit(const VertexPlace &place, std::span<const float> qualities);
+  void commit();
 
 private:
   Volume &volume_;
@@ -98,7 +89,8 @@ private:
   std::span<const Index> star_;
   StarShapes shapes_;
   double least_before_ = 1, sum_before_ = 0;
-  VertexPlace at_;
+  Vertex<3> at_{};
+  Index background_cell_ = none; ///< where its metric was found
 };
 
 } // namespace anistar
