@@ -11,7 +11,7 @@ enum class Stream : std::uint64_t {
   relocate = 0,     ///< better places of a vertex
   polish = 1,       ///< the same, where only edges become nearer to one
   pick = 2,         ///< candidates of pick_valid
-  make_way = 3,     ///< places of a vertex too near to a new one
+  reenter = 3,      ///< where a vertex of a bad cell leaves and enters again
   repair_facet = 4, ///< what is tried at a facet that fails
   mend = 0x5741,    ///< places where a star becomes Delaunay
   wander = ~0ull,   ///< moves that make nothing worse, when no other helps

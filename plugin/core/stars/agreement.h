@@ -21,9 +21,8 @@ struct AgreementCounts {
   int rounds = 0;
   AgreementStop stop = AgreementStop::agreed;
 
+  /// Adds what the blocks of the plane count side by side.
   AgreementCounts &operator+=(const AgreementCounts &other) {
-    before += other.before;
-    after += other.after;
     trials += other.trials;
     moves += other.moves;
     return *this;

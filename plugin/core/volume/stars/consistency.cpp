@@ -221,7 +221,7 @@ private:
         vertices[n++] = mesh_.apex(beyond);
     for (std::size_t k = 0; k < n; ++k) {
       const Index v = vertices[k];
-      CounterRandom random(run_.seed, Stream::make_way, v, counts.rounds);
+      CounterRandom random(run_.seed, Stream::reenter, v, counts.rounds);
       if (mover_.move(v, {effort_.trials, most_failing}, random)) {
         ++counts.moves;
         touched_[v] = 1;
