@@ -3,8 +3,7 @@
 // left.
 
 #include "base/run.h"
-#include "plane/mesh/edits.h"
-#include "plane/mesh/flips.h"
+#include "plane/mesh/workspace.h"
 #include "stars/rules.h"
 
 namespace anistar {

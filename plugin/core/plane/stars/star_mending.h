@@ -4,7 +4,7 @@
 
 #include "base/run.h"
 #include "certificate/certificate.h"
-#include "plane/mesh/edits.h"
+#include "plane/mesh/workspace.h"
 
 namespace anistar {
 
