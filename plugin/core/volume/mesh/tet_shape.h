@@ -148,7 +148,6 @@ public:
 
   void clear() { n_ = 0; }
   [[nodiscard]] std::size_t size() const { return n_; }
-  [[nodiscard]] bool is_full() const { return n_ == capacity; }
   /// @pre (a, b, c, vertex) is positive.
   void add(const Vertex<3> &a, const Vertex<3> &b, const Vertex<3> &c) {
     for (int k = 0; k < 3; ++k) {
