@@ -29,7 +29,7 @@ public:
   void clear();
   void add(Index cell);
   [[nodiscard]] bool contains(Index cell) const {
-    return std::cmp_less(cell, stamp_.size()) && stamp_[cell] == epoch_;
+    return cell >= 0 && std::cmp_less(cell, stamp_.size()) && stamp_[cell] == epoch_;
   }
   [[nodiscard]] std::span<const Index> cells() const { return cells_; }
 

@@ -47,7 +47,7 @@ private:
   BoxTree<2> tree_;
 
   [[nodiscard]] Index place(Index entry) const {
-    return std::cmp_less(entry, place_.size()) ? place_[entry] : none;
+    return entry >= 0 && std::cmp_less(entry, place_.size()) ? place_[entry] : none;
   }
   [[nodiscard]] std::vector<Box<2>> collect(const Geometry &geometry);
   [[nodiscard]] const Vector<2> &x(Index v) const { return mesh_.vertex(v).x; }
