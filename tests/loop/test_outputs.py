@@ -15,7 +15,8 @@ from anistar.runs.series import write_series
 
 pytest.importorskip("matplotlib")
 
-from anistar import pictures as pictures
+from anistar import pictures
+from anistar.pictures.plane import ellipses
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ class TestPictures:
     def test_ellipses_are_half_a_unit_from_their_centres_in_the_metric(self):
         mesh = square(2)
         M = np.tile(np.array([[9.0, 2.0], [2.0, 4.0]]), (mesh.n_points, 1, 1))
-        offsets = pictures.ellipses(mesh.points, M) - mesh.points[:, None]
+        offsets = ellipses(mesh.points, M) - mesh.points[:, None]
         lengths = np.sqrt(np.einsum("nti,nij,ntj->nt", offsets, M, offsets))
         assert lengths == pytest.approx(0.5)
 

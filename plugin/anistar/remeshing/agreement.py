@@ -24,17 +24,23 @@ def agreement_text(found: AgreementReport, dim: int) -> str:
         case AgreementOutcome.stopped_before:
             return f"skipped: stopped by {found.stopped_by.name}"
         case AgreementOutcome.varies_too_fast:
-            return f"skipped: the metric varies too fast, ln gamma {_excess(found, dim)}"
+            return _too_fast(found, dim)
         case AgreementOutcome.stopped if dim == 2:
             return f"stopped by {found.stopped_by.name}"
         case _:
             return "done" if dim == 2 or found.disagreeing == 0 else f"done, {_left(found)}"
 
 
-def _excess(found: AgreementReport, dim: int) -> str:
+def _too_fast(found: AgreementReport, dim: int) -> str:
     if dim == 2:
-        return f"of {100 - found.percent} % of the edges is above {found.ln_gamma:f}"
-    return f"p{found.percent} {found.ln_gamma:.2g} > {found.largest_ln_gamma:.2g}"
+        return (
+            f"skipped: the metric varies too fast, ln gamma of {100 - found.percent} % of the "
+            f"edges is above {found.ln_gamma:f}"
+        )
+    return (
+        f"skipped: the metric varies too fast, ln gamma p{found.percent} {found.ln_gamma:.2g} > "
+        f"{found.largest_ln_gamma:.2g}"
+    )
 
 
 def _left(found: AgreementReport) -> str:
