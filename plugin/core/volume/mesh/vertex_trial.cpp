@@ -63,11 +63,35 @@ const StarShapes &VertexTrial::measure() {
   return shapes_;
 }
 
+TriedPlace VertexTrial::here() const {
+  TriedPlace place{volume_.mesh.vertex(v_), volume_.mesh.background_cell[v_], {}};
+  for (Index c : star_)
+    place.qualities.push_back(volume_.quality[c]);
+  return place;
+}
+
+void VertexTrial::remember(TriedPlace &place) const {
+  place.vertex = at_;
+  place.background_cell = background_cell_;
+  place.qualities.clear();
+  for (std::size_t k = 0; k < star_.size(); ++k)
+    place.qualities.push_back(shapes_.quality(k));
+}
+
 void VertexTrial::commit() {
   volume_.mesh.vertex(v_) = at_;
   volume_.mesh.background_cell[v_] = background_cell_;
   for (std::size_t k = 0; k < star_.size(); ++k) {
     volume_.quality[star_[k]] = shapes_.quality(k);
+    volume_.touch(star_[k]);
+  }
+}
+
+void VertexTrial::commit(const TriedPlace &place) {
+  volume_.mesh.vertex(v_) = place.vertex;
+  volume_.mesh.background_cell[v_] = place.background_cell;
+  for (std::size_t k = 0; k < star_.size(); ++k) {
+    volume_.quality[star_[k]] = place.qualities[k];
     volume_.touch(star_[k]);
   }
 }

@@ -53,6 +53,14 @@ template <class Seen>
   return weight > 0 ? Vector<3>(step / weight) : step;
 }
 
+/// A place that was tried: the vertex there, where its metric was found, and the shapes
+/// of its cells.
+struct TriedPlace {
+  Vertex<3> vertex{};
+  Index background_cell = none;
+  std::vector<float> qualities;
+};
+
 class VertexTrial {
 public:
   /// @param hausdorff_number of curved surfaces, relative to an edge
@@ -79,8 +87,15 @@ public:
   /// Where it is tried; the address stays the same.
   [[nodiscard]] const Vertex<3> &vertex() const { return at_; }
 
+  /// Where the vertex of the mesh is.
+  [[nodiscard]] TriedPlace here() const;
+  /// The place that is tried now. @pre the shapes were measured
+  void remember(TriedPlace &place) const;
+
   /// Moves the vertex of the mesh there. @pre the shapes were measured
   void commit();
+  /// The same for a place that was remembered.
+  void commit(const TriedPlace &place);
 
 private:
   Volume &volume_;

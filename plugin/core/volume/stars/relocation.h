@@ -4,6 +4,9 @@
 #include "volume/mesh/vertex_trial.h"
 #include "volume/stars/facet_margins.h"
 
+#include <functional>
+#include <optional>
+
 namespace anistar {
 
 /// The mesh with what agreement knows of it.
@@ -25,7 +28,7 @@ inline constexpr double agreement_floor = .5;
 class VolumeRelocation {
 public:
   explicit VolumeRelocation(AgreementState &state)
-      : state_(state), volume_(state.volume) {}
+      : state_(state), volume_(state.volume), trial_(volume_, state.hausdorff_number) {}
 
   /// The cells of the star of v.
   [[nodiscard]] std::span<const Index> star(Index v) {
@@ -40,36 +43,14 @@ public:
   /// Random places ever further off, up to this metric distance, where no more facets
   /// fail and no length is worse. @returns whether the caller accepted one of them, who
   /// is asked when v is there already.
-  template <class Accept>
-  bool relocate_where(Index v, double radius, CounterRandom &random, Accept accept) {
-    if (!gather(v))
-      return false;
-    const Score before = here();
-    const Vertex<3> from = trial_;
-    const Index from_cell = volume_.mesh.background_cell[v];
-    const std::size_t n_changed = state_.changed.size();
-    for (int k = 0; k < n_places; ++k) {
-      Index at = from_cell;
-      if (!try_near(from, radius * (k + 1) / n_places, before, random, at))
-        continue;
-      remember();
-      commit(trial_, at);
-      if (accept())
-        return true;
-      keep_trial();
-      commit(from, from_cell);
-      state_.changed.resize(n_changed);
-    }
-    return false;
-  }
+  bool relocate_where(Index v, double radius, CounterRandom &random,
+                      const std::function<bool()> &accept);
   /// A step towards better shapes at which no more facets fail, and not by more.
   bool polish(Index v);
 
   [[nodiscard]] std::size_t trials() const { return trials_; }
 
 private:
-  static constexpr int n_places = 16;
-
   struct TestedFacet {
     HalfFacet at;
     FacetStar star; ///< with the trial vertex in the place of v
@@ -80,29 +61,34 @@ private:
     double quality_min = 1, quality_sum = 0;
     [[nodiscard]] double total() const { return cost.total() + lengths; }
   };
+  /// A place with the margins of the facets there.
+  struct Tried {
+    TriedPlace place;
+    std::vector<float> margins;
+  };
 
   AgreementState &state_;
   Volume &volume_;
-  Index v_ = none;
-  Vertex<3> trial_;
+  VertexTrial trial_;
   std::vector<Index> star_;
   std::vector<Index> ring_; ///< the vertices that v has edges with
   std::vector<TestedFacet> facets_;
-  std::vector<float> margins_, best_margins_, qualities_, best_qualities_;
-  StarShapes shapes_;
+  std::vector<float> margins_; ///< at the place that is tried
+  Tried best_;
   std::size_t trials_ = 0;
 
   [[nodiscard]] bool gather(Index v);
-  void gather_facets(Index c, std::size_t at);
-  [[nodiscard]] Score here();
-  [[nodiscard]] bool place(const Vector<3> &x, Index &background_cell);
-  [[nodiscard]] bool evaluate(double floor, double limit, Score &score);
+  void gather_facets(Index v, Index c, std::size_t at);
+  [[nodiscard]] Score score_here();
+  [[nodiscard]] Tried here();
+  [[nodiscard]] bool place(const Vector<3> &x);
+  [[nodiscard]] std::optional<Score> evaluate(double floor, double limit);
   [[nodiscard]] double length_penalty() const;
-  void keep_trial();
+  template <class Step, class Visit>
+  bool try_places(int n, double floor, Step step, Visit visit);
   void remember();
-  [[nodiscard]] bool try_near(const Vertex<3> &from, double radius, const Score &before,
-                              CounterRandom &random, Index &background_cell);
-  void commit(const Vertex<3> &vertex, Index background_cell);
+  void commit(const Tried &tried);
+  void move_here();
 };
 
 } // namespace anistar
