@@ -103,14 +103,13 @@ class PlaneStars {
 public:
   static constexpr std::size_t d = 2;
 
-  PlaneStars(Workspace &w, const Run &run, const QualityFloor &floor, PlaneResult &out)
-      : w_(w), run_(run), floor_(floor), out_(out) {}
+  PlaneStars(Workspace &w, const Run &run, const QualityFloor &floor,
+             const DistortionQuantiles &distortion)
+      : w_(w), run_(run), floor_(floor), distortion_(distortion) {}
 
   [[nodiscard]] const Triangulation<2> &mesh() const { return w_.mesh; }
 
-  [[nodiscard]] AgreementReport plan(const RemeshSettings &settings) {
-    out_.distortion =
-        distortion_quantiles(w_.mesh.vertices, w_.mesh.cells, run_.threads);
+  [[nodiscard]] AgreementReport plan(const RemeshSettings &settings) const {
     AgreementReport plan;
     const bool is_wanted = settings.agreement != AgreementMode::off &&
                            settings.consistency != ConsistencyMode::pure;
@@ -119,11 +118,8 @@ public:
       plan.outcome = AgreementOutcome::stopped_before;
       plan.stopped_by = run_.monitor.reason();
     } else if (is_wanted && settings.agreement == AgreementMode::when_possible &&
-               out_.distortion.p99 > largest_agreeing_distortion) {
-      plan.outcome = AgreementOutcome::varies_too_fast;
-      plan.percent = 99;
-      plan.ln_gamma = out_.distortion.p99;
-      plan.largest_ln_gamma = largest_agreeing_distortion;
+               distortion_.p99 > largest_agreeing_distortion) {
+      return varies_too_fast(99, distortion_.p99, largest_agreeing_distortion);
     } else if (is_wanted) {
       plan.outcome = AgreementOutcome::done;
     }
@@ -132,10 +128,11 @@ public:
   AgreementCounts agree() {
     const AgreementCounts counts = anistar::agree(w_, run_);
     // the flips after a move mind no quality
-    out_.shape->bisections += bisect(w_, run_, floor_);
+    n_bisections_ += bisect(w_, run_, floor_);
     renumber(w_, run_.threads);
     return counts;
   }
+  [[nodiscard]] std::size_t n_bisections() const { return n_bisections_; }
   [[nodiscard]] static bool is_certified(const RemeshSettings &settings,
                                          const AgreementReport &agreement) {
     return asks_for_stars(settings) &&
@@ -159,7 +156,8 @@ private:
   Workspace &w_;
   const Run &run_;
   const QualityFloor &floor_;
-  PlaneResult &out_;
+  const DistortionQuantiles &distortion_;
+  std::size_t n_bisections_ = 0;
 
   [[nodiscard]] static bool asks_for_stars(const RemeshSettings &settings) {
     return settings.agreement != AgreementMode::off ||
@@ -232,8 +230,11 @@ PlaneResult remesh(const Background<2> &background, const GeometryInput &input,
     out.shape = shape(w, run, floor);
   renumber(w, run.threads);
 
-  PlaneStars stars(w, run, floor, out);
+  out.distortion = distortion_quantiles(w.mesh.vertices, w.mesh.cells, run.threads);
+  PlaneStars stars(w, run, floor, out.distortion);
   certify_stars(stars, run, settings, watch, out);
+  if (out.shape)
+    out.shape->bisections += stars.n_bisections();
 
   watch.phase("report");
   report(w, run, start, out);

@@ -52,4 +52,15 @@ struct AgreementReport {
   }
 };
 
+/// Of agreement that is not made because the metric varies too fast.
+[[nodiscard]] inline AgreementReport varies_too_fast(int percent, double ln_gamma,
+                                                     double largest) {
+  AgreementReport report;
+  report.outcome = AgreementOutcome::varies_too_fast;
+  report.percent = percent;
+  report.ln_gamma = ln_gamma;
+  report.largest_ln_gamma = largest;
+  return report;
+}
+
 } // namespace anistar

@@ -43,18 +43,11 @@ public:
     }
     const DistortionQuantiles gamma =
         distortion_quantiles(mesh().vertices, mesh().cells, run_.threads);
-    plan.outcome = AgreementOutcome::varies_too_fast;
-    if (gamma.p90 > largest_agreeing_p90) {
-      plan.percent = 90;
-      plan.ln_gamma = gamma.p90;
-      plan.largest_ln_gamma = largest_agreeing_p90;
-    } else if (gamma.p99 > largest_agreeing_p99) {
-      plan.percent = 99;
-      plan.ln_gamma = gamma.p99;
-      plan.largest_ln_gamma = largest_agreeing_p99;
-    } else {
-      plan.outcome = AgreementOutcome::done;
-    }
+    if (gamma.p90 > largest_agreeing_p90)
+      return varies_too_fast(90, gamma.p90, largest_agreeing_p90);
+    if (gamma.p99 > largest_agreeing_p99)
+      return varies_too_fast(99, gamma.p99, largest_agreeing_p99);
+    plan.outcome = AgreementOutcome::done;
     return plan;
   }
   AgreementCounts agree() {
