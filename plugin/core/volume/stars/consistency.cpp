@@ -26,6 +26,11 @@ constexpr double any_progress = .995;
 /// for what it costs. More places are tried only when at most so many cells fail.
 constexpr double many_failing = .3;
 constexpr std::size_t few_failing = 100;
+/// Rounds without a gain after which a run with few failing cells is stuck. It tries
+/// more places, and allows an insertion one more failing facet after every so many
+/// rounds: usually it must leave fewer.
+constexpr int stuck_after = 3, usual_trials = 3, more_trials = 10;
+constexpr int fewer_failing = -1, most_allowed = 2, rounds_per_facet = 4;
 /// While at most this part of the cells fails, what the rules hardly improve goes
 /// through agreement and mending again, that many rounds later at the earliest:
 /// they swap facets of surfaces, remove vertices and let them wander, which the rules
@@ -74,9 +79,14 @@ struct Progress {
            since_agreement >= agreement_period;
   }
   [[nodiscard]] Effort effort(std::size_t n_bad) const {
-    const bool is_stuck = since_best > 3 && n_bad <= few_failing;
-    return {failing<many_failing, failing> good_progress * before, is_stuck,
-            is_stuck ? 10 : 3, is_stuck ? std::min(-1 + since_best / 4, 2) : -1};
+    const bool is_stuck = since_best > stuck_after && n_bad <= few_failing;
+    const int patience_spent = since_best / rounds_per_facet;
+    return {
+        .moves = failing<many_failing, .inserts_early = failing> good_progress * before,
+        .is_stuck = is_stuck,
+        .trials = is_stuck ? more_trials : usual_trials,
+        .allowance = is_stuck ? std::min(fewer_failing + patience_spent, most_allowed)
+                              : fewer_failing};
   }
 };
 
@@ -133,7 +143,7 @@ public:
   }
   [[nodiscard]] Judgement<PointScore> judge(const Vertex<3> &p, Index cell,
                                             double radius) {
-    if (!insertion_.gather(p, std::array{cell}, {separation}))
+    if (!insertion_.gather(p, std::array{cell}, {.closest = separation}))
       return {};
     const HalfFacet wall = insertion_.encroached();
     if (wall.exists() && !effort_.is_stuck)
@@ -204,7 +214,7 @@ private:
     } else if (!effort_.inserts_early) {
       if (!move_any(item, counts, 0))
         (void)insert_for(item, counts);
-    } else if (!move_any(item, counts, -1) && !insert_for(item, counts)) {
+    } else if (!move_any(item, counts, fewer_failing) && !insert_for(item, counts)) {
       (void)move_any(item, counts, 0);
     }
   }
@@ -222,7 +232,8 @@ private:
     for (std::size_t k = 0; k < n; ++k) {
       const Index v = vertices[k];
       CounterRandom random(run_.seed, Stream::reenter, v, counts.rounds);
-      if (mover_.move(v, {effort_.trials, most_failing}, random)) {
+      if (mover_.move(v, {.trials = effort_.trials, .most_failing = most_failing},
+                      random)) {
         ++counts.moves;
         touched_[v] = 1;
         touch_link();
@@ -244,7 +255,7 @@ private:
       if (wall.exists() && split(wall, counts))
         return true;
     if (!best.exists() || best.score.failing > effort_.allowance ||
-        !insertion_.gather(best.p, std::array{best.seed}, {separation}))
+        !insertion_.gather(best.p, std::array{best.seed}, {.closest = separation}))
       return false;
     const Index v =
         volume_.add_vertex(best.p, Triangulation<3>::interior, none, best.background);
@@ -284,7 +295,8 @@ private:
       return false;
     const ScoredPlace best = best_on_edge(feature);
     if (!best.exists() || best.score.failing > effort_.allowance ||
-        !insertion_.gather(best.p, shell_.all(), {separation, {a, b}}))
+        !insertion_.gather(best.p, shell_.all(),
+                           {.closest = separation, .lost = {a, b}}))
       return false;
     const Index v =
         volume_.add_vertex(best.p, feature.dimension, feature.lies_on, best.background);
@@ -305,7 +317,8 @@ private:
       found.p = volume_.background.vertex(
           volume_.surface.place(feature.dimension, feature.lies_on, a + s * (b - a)),
           found.background);
-      if (!insertion_.gather(found.p, shell_.all(), {separation, {shell_.a, shell_.b}}))
+      if (!insertion_.gather(found.p, shell_.all(),
+                             {.closest = separation, .lost = {shell_.a, shell_.b}}))
         continue;
       found.score = insertion_.score(parameters_.sigma_0,
                                      std::numeric_limits<double>::infinity());

@@ -79,7 +79,8 @@ bool FacetRepair::swap(HalfFacet facet, Demand demand) {
   const Triangulation<3> &mesh = volume_.mesh;
   const std::array<Index, 2> both{facet.cell(), mesh.opposite(facet).cell()};
   const Facet<3> t = mesh.facet(facet);
-  if (replace(both, mesh.apex(facet), {none, none}, {agreement_floor, 0}, demand))
+  if (replace(both, mesh.apex(facet), {none, none},
+              {.floor = agreement_floor, .gain = 0}, demand))
     return true;
   for (std::size_t k = 0; k < 3; ++k)
     if (remove_edge(facet.cell(), t[k], t[(k + 1) % 3], demand))
@@ -95,7 +96,10 @@ bool FacetRepair::remove_edge(Index c, Index a, Index b, Demand demand) {
     if (!walls->admits_apex(k))
       continue;
     if (replace(shell_.all(), shell_.ring[k], {a, b},
-                {agreement_floor, 0, 0, state_.hausdorff_number}, demand))
+                {.floor = agreement_floor,
+                 .gain = 0,
+                 .hausdorff_number = state_.hausdorff_number},
+                demand))
       return true;
   }
   return false;
@@ -108,7 +112,8 @@ bool FacetRepair::reinsert(Index v) {
   const std::size_t n_star = star_.size();
   grow_cavity(volume_, v, star_);
   return star_.size() != n_star &&
-         replace(star_, v, {none, none}, {agreement_floor, 0, longest_made},
+         replace(star_, v, {none, none},
+                 {.floor = agreement_floor, .gain = 0, .longest = longest_made},
                  Demand::lower_cost);
 }
 
@@ -117,7 +122,8 @@ bool FacetRepair::collapse(Index v, Index u) {
   if (volume_.feature(v) != Triangulation<3>::interior)
     return false;
   star_of(volume_, v, star_);
-  if (!replace(star_, u, {v, none}, {agreement_floor, 0, longest_made},
+  if (!replace(star_, u, {v, none},
+               {.floor = agreement_floor, .gain = 0, .longest = longest_made},
                Demand::fewer_failing))
     return false;
   volume_.remove_vertex(v);
@@ -147,7 +153,8 @@ bool FacetRepair::insert(Index c, Index a, Index b, CounterRandom &random) {
         volume_.mark_cell(cell);
       grow_cavity(volume_, v, star_);
     }
-    if (replace(star_, v, {a, b}, {agreement_floor, 0}, Demand::fewer_failing))
+    if (replace(star_, v, {a, b}, {.floor = agreement_floor, .gain = 0},
+                Demand::fewer_failing))
       return true;
     volume_.remove_vertex(v);
   }

@@ -29,7 +29,7 @@ bool VertexMover::move(Index v, const MoveDemand &demand, CounterRandom &random)
   const Vertex<3> from = mesh.vertex(v);
   mesh.vertex(v) = best.p;
   if (!operator_.replace(insertion_.cells(), v, {none, none},
-                         {quality_floor, 1e-4, longest})) {
+                         {.floor = quality_floor, .longest = longest})) {
     mesh.vertex(v) = from;
     return false;
   }
