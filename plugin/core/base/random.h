@@ -5,17 +5,32 @@
 
 namespace anistar {
 
-/// Who draws: no two uses that may draw for one item in one pass have one stream. The
-/// values are part of the meshes: another value makes other ones.
+/// Who draws: no two uses that may draw for one item in one pass have one stream.
 enum class Stream : std::uint64_t {
-  relocate = 0,     ///< better places of a vertex
-  polish = 1,       ///< the same, where only edges become nearer to one
-  pick = 2,         ///< candidates of pick_valid
-  reenter = 3,      ///< where a vertex of a bad cell leaves and enters again
-  repair_facet = 4, ///< what is tried at a facet that fails
-  mend = 0x5741,    ///< places where a star becomes Delaunay
-  wander = ~0ull,   ///< moves that make nothing worse, when no other helps
+  relocate,     ///< better places of a vertex
+  polish,       ///< the same, where only edges become nearer to one
+  pick,         ///< candidates of pick_valid
+  reenter,      ///< where a vertex of a bad cell leaves and enters again
+  repair_facet, ///< what is tried at a facet that fails
+  mend,         ///< places where a star becomes Delaunay
+  wander,       ///< moves that make nothing worse, when no other helps
 };
+
+/// Where a stream begins. The first ones follow the seed, one after another; mend is
+/// further from it than they are (no sum of the bits of its mask, of any signs, is
+/// below 10431), and wander on the other side of all seeds below 2^63 - 2. The values
+/// are part of the meshes: others make other ones.
+[[nodiscard]] constexpr std::uint64_t start_of(Stream stream, std::uint64_t seed) {
+  constexpr std::uint64_t mask = 0x5741u;
+  switch (stream) {
+  case Stream::mend:
+    return seed ^ mask;
+  case Stream::wander:
+    return ~seed;
+  default:
+    return seed + static_cast<std::uint64_t>(stream);
+  }
+}
 
 /// The user's seed, and the round of what visits the same items in every round.
 struct Seed {
@@ -44,9 +59,8 @@ private:
 
   [[nodiscard]] static std::uint64_t key(Seed seed, Stream stream, std::uint64_t item,
                                          std::uint64_t pass) {
-    const std::uint64_t of_stream =
-        mix(seed.value + static_cast<std::uint64_t>(stream));
-    return mix(mix(of_stream + item) + (std::uint64_t{seed.round} << 32 | pass));
+    const std::uint64_t of_item = mix(mix(start_of(stream, seed.value)) + item);
+    return mix(of_item + (std::uint64_t{seed.round} << 32 | pass));
   }
   [[nodiscard]] static std::uint64_t mix(std::uint64_t z) {
     z += golden;
