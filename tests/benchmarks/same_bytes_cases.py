@@ -147,7 +147,7 @@ def around(mesh: Mesh) -> tuple[Mesh, Floats]:
 def sharp_corners() -> tuple[Mesh, Floats]:
     """Return sectors of many angles, and long cells in all directions."""
     mesh = sectors([9, 31, 17, 24, 40, 12, 35, 28], np.linspace(1, 0.7, 9))
-    return mesh, stretched(0.12, 0.03, mesh.points @ [9.0, -5.0])
+    return mesh, stretched(0.12, 0.03, 9.0 * mesh.points[:, 0] - 5.0 * mesh.points[:, 1])
 
 
 def thin() -> Iterator[Run]:
