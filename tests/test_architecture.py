@@ -287,6 +287,16 @@ def test_concepts_of_the_core_include_each_other_without_circles():
     assert in_circles(included()) == set()
 
 
+@pytest.mark.parametrize("mesher", ["plane", "volume"])
+def test_no_two_uses_of_random_numbers_in_a_mesher_share_a_stream(mesher):
+    sources = [path for room in (mesher, "stars") for path in (CORE / room).rglob("*.[ch]*")]
+    drawn = Counter(
+        stream for path in sources for stream in re.findall(r"Stream::(\w+)", path.read_text())
+    )
+    assert {"relocate", "mend", "pick"} <= drawn.keys()
+    assert set(drawn.values()) == {1}
+
+
 def core_includes():
     """Pairs of folders of the core, the first with an include of the second."""
     found = set()

@@ -32,6 +32,18 @@ enum class Stream : std::uint64_t {
   }
 }
 
+/// Whether all streams of a seed begin apart.
+[[nodiscard]] constexpr bool are_apart(std::uint64_t seed) {
+  for (int one = 0; one <= static_cast<int>(Stream::wander); ++one)
+    for (int other = 0; other < one; ++other)
+      if (start_of(static_cast<Stream>(one), seed) ==
+          start_of(static_cast<Stream>(other), seed))
+        return false;
+  return true;
+}
+static_assert(are_apart(0) && are_apart(1) && are_apart(0x5741) &&
+              are_apart((std::uint64_t{1} << 63) - 3));
+
 /// The user's seed, and the round of what visits the same items in every round.
 struct Seed {
   std::uint64_t value = 0;
