@@ -109,21 +109,19 @@ public:
 
   [[nodiscard]] const Triangulation<2> &mesh() const { return w_.mesh; }
 
-  [[nodiscard]] AgreementReport plan(const RemeshSettings &settings) const {
-    AgreementReport plan;
-    const bool is_wanted = settings.agreement != AgreementMode::off &&
-                           settings.consistency != ConsistencyMode::pure;
-    if (run_.is_stopped() && asks_for_stars(settings)) {
+  [[nodiscard]] std::optional<AgreementReport>
+  refusal(const RemeshSettings &settings) const {
+    if (run_.is_stopped() && asks_for_stars(settings))
       // the cells of a mesh that is not refined can reach across the whole domain
-      plan.outcome = AgreementOutcome::stopped_before;
-      plan.stopped_by = run_.monitor.reason();
-    } else if (is_wanted && settings.agreement == AgreementMode::when_possible &&
-               distortion_.p99 > largest_agreeing_distortion) {
+      return AgreementReport{.outcome = AgreementOutcome::stopped_before,
+                             .stopped_by = run_.monitor.reason()};
+    if (settings.agreement == AgreementMode::off ||
+        settings.consistency == ConsistencyMode::pure)
+      return AgreementReport{.outcome = AgreementOutcome::off};
+    if (settings.agreement == AgreementMode::when_possible &&
+        distortion_.p99 > largest_agreeing_distortion)
       return varies_too_fast(99, distortion_.p99, largest_agreeing_distortion);
-    } else if (is_wanted) {
-      plan.outcome = AgreementOutcome::done;
-    }
-    return plan;
+    return {};
   }
   AgreementCounts agree() {
     const AgreementCounts counts = anistar::agree(w_, run_);

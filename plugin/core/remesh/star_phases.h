@@ -14,21 +14,22 @@ namespace anistar {
 
 /// As far as the metric, the settings and the budgets let them.
 ///
-/// @tparam Stars what a dimension adds: `d`; plan(settings): what is to become of
-/// agreement, `done` where it is to be made; agree(); is_certified(settings, agreement)
-/// and is_mended(agreement); certify(): the answers for all cells, none when it was cut
+/// @tparam Stars what a dimension adds: `d`; refusal(settings): why agreement is
+/// not made, none where it is; agree(); is_certified(settings, agreement) and
+/// is_mended(agreement); certify(): the answers for all cells, none when it was cut
 /// short; mend(known); refine(settings, known): consistency; mesh()
 template <class Stars>
 void certify_stars(Stars &stars, const Run &run, const RemeshSettings &settings,
                    Stopwatch &watch, RemeshResult<Stars::d> &out) {
   watch.phase("agreement");
   AgreementReport &agreement = out.agreement;
-  agreement = stars.plan(settings);
-  if (agreement.outcome == AgreementOutcome::done) {
+  if (const auto refusal = stars.refusal(settings)) {
+    agreement = *refusal;
+  } else {
     agreement.counts = stars.agree();
+    agreement.outcome =
+        run.is_stopped() ? AgreementOutcome::stopped : AgreementOutcome::done;
     agreement.stopped_by = run.monitor.reason();
-    if (run.is_stopped())
-      agreement.outcome = AgreementOutcome::stopped;
   }
   if (!stars.is_certified(settings, agreement))
     return;

@@ -41,7 +41,7 @@ enum class AgreementOutcome {
 
 struct AgreementReport {
   AgreementOutcome outcome = AgreementOutcome::off;
-  AgreementCounts counts;
+  AgreementCounts counts{};
   StopReason stopped_by = StopReason::finished;
   /// What forbade it: this quantile of the distortion, and its bound.
   int percent = 0;
@@ -55,12 +55,10 @@ struct AgreementReport {
 /// Of agreement that is not made because the metric varies too fast.
 [[nodiscard]] inline AgreementReport varies_too_fast(int percent, double ln_gamma,
                                                      double largest) {
-  AgreementReport report;
-  report.outcome = AgreementOutcome::varies_too_fast;
-  report.percent = percent;
-  report.ln_gamma = ln_gamma;
-  report.largest_ln_gamma = largest;
-  return report;
+  return {.outcome = AgreementOutcome::varies_too_fast,
+          .percent = percent,
+          .ln_gamma = ln_gamma,
+          .largest_ln_gamma = largest};
 }
 
 } // namespace anistar

@@ -24,31 +24,26 @@ public:
 
   [[nodiscard]] const Triangulation<3> &mesh() const { return volume_.mesh; }
 
-  [[nodiscard]] AgreementReport plan(const RemeshSettings &settings) const {
+  [[nodiscard]] std::optional<AgreementReport>
+  refusal(const RemeshSettings &settings) const {
     (void)run_.monitor.look(0); // small meshes come here without a look at the clock
-    AgreementReport plan;
     if (settings.agreement == AgreementMode::off)
-      return plan;
-    if (run_.is_stopped()) {
+      return AgreementReport{.outcome = AgreementOutcome::off};
+    if (run_.is_stopped())
       // the cells of a mesh that is not refined can reach across the whole domain
-      plan.outcome = AgreementOutcome::stopped_before;
-      plan.stopped_by = run_.monitor.reason();
-      return plan;
-    }
+      return AgreementReport{.outcome = AgreementOutcome::stopped_before,
+                             .stopped_by = run_.monitor.reason()};
     // it takes as long as all the rest, for a property that only some ask for
     if (settings.agreement == AgreementMode::when_possible &&
-        settings.consistency == ConsistencyMode::off) {
-      plan.outcome = AgreementOutcome::not_asked;
-      return plan;
-    }
+        settings.consistency == ConsistencyMode::off)
+      return AgreementReport{.outcome = AgreementOutcome::not_asked};
     const DistortionQuantiles gamma =
         distortion_quantiles(mesh().vertices, mesh().cells, run_.threads);
     if (gamma.p90 > largest_agreeing_p90)
       return varies_too_fast(90, gamma.p90, largest_agreeing_p90);
     if (gamma.p99 > largest_agreeing_p99)
       return varies_too_fast(99, gamma.p99, largest_agreeing_p99);
-    plan.outcome = AgreementOutcome::done;
-    return plan;
+    return {};
   }
   AgreementCounts agree() {
     const AgreementCounts counts = anistar::agree(volume_, run_);
