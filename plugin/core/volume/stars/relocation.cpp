@@ -34,30 +34,40 @@ constexpr double no_limit = std::numeric_limits<double>::infinity();
 } // namespace
 
 /// @returns false when v may not move or its star is too large.
-bool VolumeRelocation::gather(Index v) {
-  const Triangulation<3> &mesh = volume_.mesh;
+bool VolumeRelocation::gather_star(Index v) {
   if (volume_.feature(v) == Triangulation<3>::corner)
     return false;
+  v_ = v;
   star_of(volume_, v, star_);
-  if (!trial_.gather(v, star_))
-    return false;
+  return trial_.gather(v, star_);
+}
+
+/// Takes up the edges and facets around v. @pre its star was gathered
+void VolumeRelocation::gather_around() {
+  const Triangulation<3> &mesh = volume_.mesh;
   facets_.clear();
   ring_.clear();
   volume_.open_vertices();
-  volume_.mark_vertex(v);
+  volume_.mark_vertex(v_);
   for (Index c : star_) {
-    const std::size_t at = mesh.local_index(c, v);
+    const std::size_t at = mesh.local_index(c, v_);
     for (Index u : facet_of<3>(mesh.at(c), at))
       if (volume_.mark_vertex(u))
         ring_.push_back(u);
-    gather_facets(v, c, at);
+    gather_facets(c, at);
   }
+}
+
+bool VolumeRelocation::gather(Index v) {
+  if (!gather_star(v))
+    return false;
+  gather_around();
   return true;
 }
 
 /// The facets of a cell of the star that have another side and are no walls; those at v
 /// from one of their cells only. @param at where v is in the cell
-void VolumeRelocation::gather_facets(Index v, Index c, std::size_t at) {
+void VolumeRelocation::gather_facets(Index c, std::size_t at) {
   const Triangulation<3> &mesh = volume_.mesh;
   for (std::size_t i = 0; i < 4; ++i) {
     const HalfFacet h(c, i), other = mesh.opposite(h);
@@ -65,13 +75,13 @@ void VolumeRelocation::gather_facets(Index v, Index c, std::size_t at) {
       continue;
     FacetStar star = facet_star(mesh, h);
     for (const Vertex<3> *&vertex : star)
-      if (vertex == &mesh.vertex(v))
+      if (vertex == &mesh.vertex(v_))
         vertex = &trial_.vertex();
     facets_.push_back({h, star});
   }
 }
 
-/// @pre nothing was tried since v was gathered.
+/// Of v where it is in the mesh.
 VolumeRelocation::Score VolumeRelocation::score_here() {
   Score score;
   for (Index c : star_)
@@ -80,14 +90,14 @@ VolumeRelocation::Score VolumeRelocation::score_here() {
   score.quality_sum = trial_.sum_before();
   for (const TestedFacet &facet : facets_)
     score.cost.add_facet(static_cast<double>(state_.margins.at(facet.at)));
-  score.lengths = length_penalty();
+  score.lengths = length_penalty(volume_.mesh.vertex(v_));
   return score;
 }
 
-double VolumeRelocation::length_penalty() const {
+double VolumeRelocation::length_penalty(const Vertex<3> &at) const {
   double penalty = 0;
   for (Index u : ring_) {
-    const double l = fast_length(volume_.mesh.vertex(u), trial_.vertex());
+    const double l = fast_length(volume_.mesh.vertex(u), at);
     penalty += short_weight * std::max(0., shortest_free - l) +
                long_weight * std::max(0., l - longest_free);
   }
@@ -116,7 +126,7 @@ std::optional<VolumeRelocation::Score> VolumeRelocation::evaluate(double floor,
     return {};
   for (std::size_t k = 0; k < star_.size(); ++k)
     score.cost.add_cell(static_cast<double>(shapes.quality(k)));
-  score.lengths = length_penalty();
+  score.lengths = length_penalty(trial_.vertex());
   margins_.clear();
   for (const TestedFacet &facet : facets_) {
     const float margin = as_margin(facet_margin(facet.star));
@@ -242,29 +252,51 @@ bool VolumeRelocation::relocate_where(Index v, double radius, CounterRandom &ran
       });
 }
 
-bool VolumeRelocation::polish(Index v) {
-  if (!gather(v))
+/// Whether at the place no more facets fail and edges are no worse; they may come
+/// nearer to it. The margins are kept.
+bool VolumeRelocation::disagrees_no_more(const Score &before) {
+  if (length_penalty(trial_.vertex()) > before.lengths + least_gain)
     return false;
+  margins_.clear();
+  int failing = 0;
+  for (const TestedFacet &facet : facets_) {
+    margins_.push_back(as_margin(facet_margin(facet.star)));
+    failing += margins_.back() > 0;
+    if (failing > before.cost.failing)
+      return false;
+  }
+  return true;
+}
+
+bool VolumeRelocation::polish(Index v) {
+  if (!gather_star(v))
+    return false;
+  const Vector<3> start = trial_.vertex().x;
   const Matrix<3> L = lower_factor<3>(trial_.vertex().M);
   const auto seen = [&](const Vector<3> &x) -> Vector<3> { return L.transpose() * x; };
   const Vector<3> step = ideal_step(volume_, v, star_, seen);
   if (step.squaredNorm() < smallest_polish * smallest_polish)
     return false;
-  const Score before = score_here();
-  const double gain = polish_gain * static_cast<double>(star_.size());
-  // what fails is a whole number: this refuses one more, and lets facets come nearer
-  const double limit = before.cost.failing + 1;
-  return try_places(
-      static_cast<int>(std::size(polish_fractions)), floor_of(before.quality_min),
-      [&](int k) { return in_space(L, polish_fractions[k] * step); },
-      [&](const Score &score) {
-        if (score.cost.failing >= limit ||
-            score.quality_sum < before.quality_sum + gain ||
-            score.lengths > before.lengths + least_gain)
-          return false;
-        move_here();
-        return true;
-      });
+  const double floor = floor_of(trial_.least_before());
+  const double least_sum =
+      trial_.sum_before() + polish_gain * static_cast<double>(star_.size());
+  std::optional<Score> before; // few places are good enough to ask for it
+  for (const double fraction : polish_fractions) {
+    if (!place(start + in_space(L, fraction * step)))
+      continue;
+    const StarShapes &shapes = trial_.measure();
+    if (shapes.minimum() < floor || shapes.minimum() <= 0 || shapes.sum() < least_sum)
+      continue;
+    if (!before) {
+      gather_around();
+      before = score_here();
+    }
+    if (!disagrees_no_more(*before))
+      continue;
+    move_here();
+    return true;
+  }
+  return false;
 }
 
 } // namespace anistar

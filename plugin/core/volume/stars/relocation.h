@@ -70,6 +70,7 @@ private:
   AgreementState &state_;
   Volume &volume_;
   VertexTrial trial_;
+  Index v_ = none; ///< whose star was gathered
   std::vector<Index> star_;
   std::vector<Index> ring_; ///< the vertices that v has edges with
   std::vector<TestedFacet> facets_;
@@ -77,13 +78,16 @@ private:
   Tried best_;
   std::size_t trials_ = 0;
 
+  [[nodiscard]] bool gather_star(Index v);
+  void gather_around();
   [[nodiscard]] bool gather(Index v);
-  void gather_facets(Index v, Index c, std::size_t at);
+  void gather_facets(Index c, std::size_t at);
   [[nodiscard]] Score score_here();
   [[nodiscard]] Tried here();
   [[nodiscard]] bool place(const Vector<3> &x);
   [[nodiscard]] std::optional<Score> evaluate(double floor, double limit);
-  [[nodiscard]] double length_penalty() const;
+  [[nodiscard]] bool disagrees_no_more(const Score &before);
+  [[nodiscard]] double length_penalty(const Vertex<3> &at) const;
   template <class Step, class Visit>
   bool try_places(int n, double floor, Step step, Visit visit);
   void remember();
