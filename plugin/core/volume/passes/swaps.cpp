@@ -1,5 +1,6 @@
+#include "volume/mesh/slab_team.h"
 #include "volume/passes/cell_swap.h"
-#include "volume/passes/slab_team.h"
+#include "volume/passes/passes.h"
 
 namespace anistar {
 namespace {

@@ -1,7 +1,8 @@
+#include "volume/mesh/slab_team.h"
 #include "volume/mesh/vertex_star.h"
 #include "volume/mesh/vertex_trial.h"
 #include "volume/passes/collapse.h"
-#include "volume/passes/slab_team.h"
+#include "volume/passes/passes.h"
 
 namespace anistar {
 namespace {

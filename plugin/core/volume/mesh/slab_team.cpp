@@ -1,4 +1,4 @@
-#include "volume/passes/slab_team.h"
+#include "volume/mesh/slab_team.h"
 
 namespace anistar {
 

@@ -3,7 +3,8 @@
 // volume/mesh/slabs.h).
 
 #include "base/parallel.h"
-#include "volume/passes/passes.h"
+#include "base/run.h"
+#include "volume/mesh/volume.h"
 
 #include <deque>
 
@@ -25,9 +26,11 @@ void deal_free_cells(Volume &volume, std::vector<SlabWork> &work);
                                          const std::vector<SlabWork> &work);
 
 /// Threads with a view of the volume and a visitor each: visit(item) changes nothing
-/// outside of the slab of the view, `counts` is what it has done.
+/// outside of the slab of the view, `counts` is what it has done and can be added up.
 template <class Visitor> class SlabTeam {
 public:
+  using Counts = decltype(Visitor::counts);
+
   /// @param make(view) makes a visitor
   template <class Make>
   SlabTeam(Volume &volume, const Run &run, Make make) : volume_(volume), run_(run) {
@@ -40,12 +43,12 @@ public:
   /// then what was put off on the calling one. All depends on the mesh alone.
   /// @param slab_of(item, round) gives the slab of an item
   /// @returns what was done
-  template <class SlabOf> VolumeCounts visit(std::vector<Index> items, SlabOf slab_of) {
+  template <class SlabOf> Counts visit(std::vector<Index> items, SlabOf slab_of) {
     for (int round = 0; round < Slabs::n_rounds && !is_alone(); ++round)
       items = visit_round(items, slab_of, round);
     for (std::size_t k = 0; k < items.size() && run_.goes_on(k, items.size()); ++k)
       first().visit(items[k]);
-    VolumeCounts counts;
+    Counts counts{};
     for (const Member &member : members_)
       counts += member.visitor.counts;
     return counts;
