@@ -22,6 +22,11 @@ double contract(const SymmetricTensor<3> &M, const double *K) {
 struct Coefficients {
   double K[6] = {}, size[6] = {};
   double error = 0; ///< of <M, K>, for each unit of the trace of M
+
+  [[nodiscard]] double margin(const SymmetricTensor<3> &M) const {
+    const double det = contract(M, K), all = contract(M, size);
+    return all > 0 ? det / all : -barely;
+  }
 };
 
 Coefficients coefficients_of(const FacetStar &star) {
@@ -71,6 +76,37 @@ double facet_margin(const FacetStar &star) {
     worst = std::max(worst, margin);
   }
   return worst;
+}
+
+/// With u_i = x_i - e, q_i = u_i.Mu_i and w_i the minors, the determinant is
+/// sum_i w_i q_i: u_i stands in q_i and in the minors of the three others. What e does
+/// is the opposite of what all of them do.
+FacetSlope facet_slope(const FacetStar &star, std::size_t moved) {
+  const Coefficients facet = coefficients_of(star);
+  const Vertex<3> &worst = **std::max_element(
+      star.begin(), star.end(), [&](const Vertex<3> *a, const Vertex<3> *b) {
+        return facet.margin(a->M) < facet.margin(b->M);
+      });
+  std::array<Vector<3>, 4> u, Mu;
+  std::array<double, 4> q;
+  for (std::size_t i = 0; i < 4; ++i) {
+    u[i] = star[i]->x - star[4]->x;
+    Mu[i] = product<3>(worst.M, u[i]);
+    q[i] = Mu[i].dot(u[i]);
+  }
+  const auto slope = [&](std::size_t i) -> Vector<3> {
+    // the other three, in an order that makes the minor of i their triple product
+    const std::size_t j = i ^ 1, k = i < 2 ? 2 + (i & 1) : (i & 1),
+                      l = i < 2 ? 3 - (i & 1) : 1 - (i & 1);
+    const Vector<3> kl = u[k].cross(u[l]), lj = u[l].cross(u[j]), jk = u[j].cross(u[k]);
+    return 2 * u[j].dot(kl) * Mu[i] - q[j] * kl - q[k] * lj - q[l] * jk;
+  };
+  Vector<3> gradient;
+  if (moved < 4)
+    gradient = slope(moved);
+  else
+    gradient = -(slope(0) + slope(1) + slope(2) + slope(3));
+  return {facet.margin(worst.M), gradient / contract(worst.M, facet.size)};
 }
 
 } // namespace anistar

@@ -20,4 +20,14 @@ using FacetStar = std::array<const Vertex<3> *, 5>;
 /// tensor for all five.
 [[nodiscard]] double facet_margin(const FacetStar &star);
 
+/// The margin in the metric that gives the largest one, without exact arithmetic, and
+/// its gradient with respect to the place of one of the five. The metrics and the size
+/// that the margin is relative to are taken as they are.
+struct FacetSlope {
+  double margin;
+  Vector<3> gradient;
+};
+/// @param moved the index of the vertex that moves, in the star
+[[nodiscard]] FacetSlope facet_slope(const FacetStar &star, std::size_t moved);
+
 } // namespace anistar

@@ -46,7 +46,7 @@ public:
     return {};
   }
   AgreementCounts agree() {
-    const AgreementCounts counts = anistar::agree(volume_, run_);
+    const AgreementCounts counts = anistar::agree(volume_, run_, full_effort);
     renumber(volume_, run_.threads);
     return counts;
   }

@@ -63,11 +63,9 @@ const StarShapes &VertexTrial::measure() {
   return shapes_;
 }
 
-TriedPlace VertexTrial::here() const {
-  TriedPlace place{volume_.mesh.vertex(v_), volume_.mesh.background_cell[v_], {}};
-  for (Index c : star_)
-    place.qualities.push_back(volume_.quality[c]);
-  return place;
+const StarShapes &VertexTrial::measure_at(const Vector<3> &x) {
+  shapes_.evaluate({x, at_.M, at_.weight});
+  return shapes_;
 }
 
 void VertexTrial::remember(TriedPlace &place) const {

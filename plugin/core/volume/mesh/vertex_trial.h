@@ -84,11 +84,11 @@ public:
   void take_metric();
   /// Finds the shapes of the cells there. @pre the metric was taken
   const StarShapes &measure();
+  /// The same with the vertex at x, in the metric that it has where it is tried.
+  const StarShapes &measure_at(const Vector<3> &x);
   /// Where it is tried; the address stays the same.
   [[nodiscard]] const Vertex<3> &vertex() const { return at_; }
 
-  /// Where the vertex of the mesh is.
-  [[nodiscard]] TriedPlace here() const;
   /// The place that is tried now. @pre the shapes were measured
   void remember(TriedPlace &place) const;
 

@@ -1,6 +1,8 @@
 #include "volume/stars/agreement.h"
 
+#include "volume/mesh/slab_team.h"
 #include "volume/stars/facet_repair.h"
+#include "volume/stars/relocation.h"
 
 #include <utility>
 
@@ -8,46 +10,130 @@ namespace anistar {
 namespace {
 
 constexpr int max_rounds = 60;
+/// The first rounds make directed steps, which mend nine facets of ten, and then every
+/// so many: what is changed in between lets some more succeed.
+constexpr int n_directed = 3, directed_period = 3;
 /// Rounds that may pass without clearly fewer failing facets; more when only a few are
 /// left, for a round costs nothing then.
-constexpr int patience = 6, patience_with_few = 25;
+constexpr int patience = 9, patience_with_few = 30;
 constexpr std::size_t few = 100;
 constexpr double least_reduction = .05;
 /// The radius of the trial places, round by round.
 constexpr double radii[] = {.3, .15, .07};
-/// Every so many rounds collapses and insertions are tried.
-constexpr int repair_period = 5;
-/// From this round on vertices at a facet that resists wander, by this much: where
+/// Every so many rounds collapses and insertions are tried; where many facets fail not
+/// at once: they cost far more than a move, and vertices.
+constexpr int first_repair = 9, repair_period = 5;
+/// A facet that resists in these rounds makes a vertex wander, by this much: where
 /// metrics vary a lot the rest is stuck without.
-constexpr int first_wandering = 3;
 constexpr double wandering_radius = .1;
-/// A bound on the trial places; the metrics that could be certified, but for a few
-/// cells, took a third of it.
-constexpr std::size_t trials_per_cell = 20;
+/// So many trials are made whatever the number of cells.
+constexpr double fewest_trials = 2000;
 /// Re-insertion finds most of what it can in the first round: it is tried every so
 /// many.
-constexpr int reinsertion_period = 3;
-constexpr int max_polish_sweeps = 2;
+constexpr int reinsertion_period = 4;
+/// Only stars with a cell that lost so much are polished.
+constexpr float clear_loss = .02F;
+constexpr int n_last_polishes = 2;
 /// The monitor looks at the clock and at the user after so many facets, a few
 /// milliseconds.
 constexpr std::size_t calls_between_looks = 64;
 
+/// With no more failing facets than this, and one for so many cells, it would be a pity
+/// to stop.
+constexpr std::size_t nearly_none = 20, cells_per_facet_left = 2000;
+
+/// What the threads do side by side.
+struct MoveCounts {
+  std::size_t moves = 0, trials = 0;
+  std::vector<Index> changed; ///< cells
+
+  MoveCounts &operator+=(const MoveCounts &other) {
+    moves += other.moves;
+    trials += other.trials;
+    changed.insert(changed.end(), other.changed.begin(), other.changed.end());
+    return *this;
+  }
+};
+
+/// The visitor of a slab team that moves vertices: move(relocation, item) tells whether
+/// it did.
+template <class Move> class SlabMoves {
+public:
+  SlabMoves(Volume &volume, AgreementState &state, double hausdorff_number,
+            const Move &move)
+      : view_{volume, state, hausdorff_number, {}}, relocation_(view_), move_(move) {}
+
+  MoveCounts counts;
+
+  void visit(Index item) {
+    counts.moves += move_(relocation_, item);
+    counts.trials = relocation_.trials();
+    counts.changed.insert(counts.changed.end(), view_.changed.begin(),
+                          view_.changed.end());
+    view_.changed.clear();
+  }
+
+private:
+  AgreementView view_;
+  VolumeRelocation relocation_;
+  const Move &move_;
+};
+
+/// When the rounds end.
+class Effort {
+public:
+  Effort(const AgreementEffort &effort, std::size_t n_cells, std::size_t failing)
+      : patience_(effort.patience),
+        affordable_(effort.patience * (effort.trials_per_cell * double(n_cells) +
+                                       fewest_trials)),
+        left_(nearly_none + n_cells / cells_per_facet_left), fewest_(failing) {}
+
+  [[nodiscard]] int last_round() const { return patience_ * max_rounds; }
+  /// From here on trials count.
+  void begin(std::size_t trials) {
+    paid_ = trials;
+    since_ = 0;
+  }
+  /// Why no round follows on one that leaves so many failing facets.
+  [[nodiscard]] std::optional<AgreementStop> stop(std::size_t failing,
+                                                  std::size_t trials) {
+    ++since_;
+    if (double(failing) < (1 - least_reduction) * double(fewest_)) {
+      fewest_ = failing;
+      since_ = 0;
+    }
+    if (failing > left_ && double(trials - paid_) > affordable_)
+      return AgreementStop::trials;
+    if (since_ >= patience_ * (failing <= few ? patience_with_few : patience))
+      return AgreementStop::stalled;
+    return {};
+  }
+
+private:
+  int patience_;
+  double affordable_; ///< trials
+  std::size_t left_, fewest_, paid_ = 0;
+  int since_ = 0; ///< rounds since there were clearly fewer
+};
+
 class VolumeAgreement {
 public:
-  VolumeAgreement(Volume &volume, const Run &run, int persistence)
-      : volume_(volume), mesh_(volume.mesh), run_(run), persistence_(persistence),
-        state_(volume, run.hausdorff.surface), relocation_(state_),
-        repair_(state_, run.monitor) {}
+  VolumeAgreement(Volume &volume, const Run &run)
+      : volume_(volume), mesh_(volume.mesh), run_(run), state_(volume.mesh),
+        view_{volume, state_, run.hausdorff.surface, {}}, relocation_(view_),
+        repair_(view_, run.monitor) {}
 
-  AgreementCounts run() {
-    const std::uint32_t start = ++volume_.clock;
+  AgreementCounts make(const AgreementEffort &effort) {
+    start_ = ++volume_.clock;
+    quality_before_ = volume_.quality;
     state_.margins.fill(run_.threads);
     scan();
     counts_.before = failing_.size();
-    counts_.stop = reduce();
-    polish(start);
+    counts_.stop = reduce(Effort(effort, mesh_.n_cells(), failing_.size()));
+    for (int k = 0; k < n_last_polishes && polish(); ++k)
+      ;
     counts_.after = failing_.size();
-    counts_.trials = relocation_.trials();
+    counts_.trials += relocation_.trials();
     return counts_;
   }
 
@@ -55,11 +141,13 @@ private:
   Volume &volume_;
   const Triangulation<3> &mesh_;
   const Run &run_;
-  int persistence_;
   AgreementState state_;
+  AgreementView view_;
   VolumeRelocation relocation_;
   FacetRepair repair_;
   std::vector<HalfFacet> failing_; ///< each from its first cell, sorted
+  std::uint32_t start_ = 0;
+  PerCell<float> quality_before_;
   AgreementCounts counts_;
   std::size_t calls_ = 0;
 
@@ -69,6 +157,9 @@ private:
   }
   [[nodiscard]] bool still_fails(HalfFacet h) {
     return mesh_.is_alive(h.cell()) && state_.margins.fails(h);
+  }
+  [[nodiscard]] std::size_t n_trials() const {
+    return counts_.trials + relocation_.trials();
   }
 
   /// The one search of the mesh.
@@ -96,50 +187,105 @@ private:
     for (HalfFacet h : failing_)
       if (mesh_.is_alive(h.cell()))
         list(h, left);
-    std::sort(state_.changed.begin(), state_.changed.end());
+    std::sort(view_.changed.begin(), view_.changed.end());
     Index last = none;
-    for (Index c : state_.changed)
+    for (Index c : view_.changed)
       if (std::exchange(last, c) != c && mesh_.is_alive(c))
         for (std::size_t i = 0; i < 4; ++i)
           list(HalfFacet(c, i), left);
-    state_.changed.clear();
+    view_.changed.clear();
     std::sort(left.begin(), left.end(), before);
     left.erase(std::unique(left.begin(), left.end()), left.end());
     failing_ = std::move(left);
   }
 
-  AgreementStop reduce() {
-    std::size_t fewest = failing_.size();
-    int since = 0; // the last time there were clearly fewer
-    const int last_round = persistence_ * max_rounds;
-    const std::size_t most_trials = trials_per_cell * mesh_.n_cells() * persistence_;
-    for (int round = 0; round < last_round; ++round) {
+  AgreementStop reduce(Effort effort) {
+    for (int round = 0; round < effort.last_round(); ++round) {
       if (failing_.empty())
         return AgreementStop::agreed;
       ++counts_.rounds;
-      const bool is_going = visit_failing(round);
+      const double fraction = static_cast<double>(round) / effort.last_round();
+      const bool is_going =
+          round < n_directed || round % directed_period == 0
+              ? step_all(round)
+              : visit_failing(round, fraction);
       update_list();
       if (!is_going)
         return AgreementStop::interrupted;
-      if (relocation_.trials() > most_trials)
-        return AgreementStop::trials;
-      ++since;
-      if (static_cast<double>(failing_.size()) <
-          (1 - least_reduction) * static_cast<double>(fewest)) {
-        fewest = failing_.size();
-        since = 0;
+      if (round + 1 == n_directed) {
+        if (failing_.size() > few)
+          (void)polish();
+        effort.begin(n_trials());
       }
-      if (since >=
-          persistence_ * (failing_.size() <= few ? patience_with_few : patience))
-        return AgreementStop::stalled;
+      if (const auto stop = effort.stop(failing_.size(), n_trials());
+          stop && round + 1 >= n_directed)
+        return *stop;
     }
     return failing_.empty() ? AgreementStop::agreed : AgreementStop::rounds;
   }
 
-  bool visit_failing(int round) {
-    const bool is_repairing = round % repair_period == repair_period - 1;
+  /// The vertices that decide about a facet: its own and those of its cells beside it.
+  [[nodiscard]] std::array<Index, 5> vertices_at(HalfFacet h) const {
+    const Facet<3> t = mesh_.facet(h);
+    return {t[0], t[1], t[2], mesh_.apex(h), mesh_.apex(mesh_.opposite(h))};
+  }
+
+  /// Moves on several threads. @returns how many
+  template <class SlabOf, class Move>
+  std::size_t move_by_slabs(std::vector<Index> items, SlabOf slab_of,
+                            const Move &move) {
+    SlabTeam<SlabMoves<Move>> team(volume_, run_, [&](Volume &seen) {
+      return SlabMoves<Move>(seen, state_, run_.hausdorff.surface, move);
+    });
+    const MoveCounts made = team.visit(std::move(items), slab_of);
+    counts_.trials += made.trials;
+    view_.changed.insert(view_.changed.end(), made.changed.begin(), made.changed.end());
+    return made.moves;
+  }
+  [[nodiscard]] std::size_t slab_of_vertex(Index v, int slab_round) const {
+    // the graph of ridges is no slab's
+    return volume_.feature(v) <= 1 ? Slabs::nowhere
+                                   : volume_.state.slabs.of_star(v, slab_round);
+  }
+  [[nodiscard]] std::size_t slab_of_facet(HalfFacet h, int slab_round) const {
+    const std::array<Index, 5> vertices = vertices_at(h);
+    const std::size_t slab = slab_of_vertex(vertices[0], slab_round);
+    const bool is_one = std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
+      return slab_of_vertex(v, slab_round) == slab;
+    });
+    return is_one ? slab : Slabs::nowhere;
+  }
+
+  /// A round of directed steps, and of swaps of what resists them.
+  bool step_all(int round) {
+    std::vector<Index> items(failing_.size());
+    std::iota(items.begin(), items.end(), 0);
+    counts_.moves += move_by_slabs(
+        std::move(items),
+        [&](Index k, int slab_round) { return slab_of_facet(failing_[k], slab_round); },
+        [&](VolumeRelocation &relocation, Index k) {
+          return step_at(relocation, failing_[k], round);
+        });
+    for (std::size_t k = 0; round > 0 && k < failing_.size() && go_on(0); ++k)
+      if (still_fails(failing_[k]))
+        counts_.swaps += repair_.swap(failing_[k], FacetRepair::Demand::fewer_failing);
+    return !run_.is_stopped();
+  }
+  std::size_t step_at(VolumeRelocation &relocation, HalfFacet h, int round) {
+    CounterRandom random(run_.seed, Stream::repair_facet, h.code(), round);
+    const std::array<Index, 5> vertices = vertices_at(h);
+    const auto first = static_cast<std::size_t>(5 * random.uniform());
+    std::size_t moves = 0;
+    for (std::size_t k = 0; k < 5 && state_.margins.fails(h); ++k)
+      moves += relocation.step(vertices[(first + k) % 5]);
+    return moves;
+  }
+
+  bool visit_failing(int round, double fraction) {
+    const bool is_repairing = (round >= first_repair || failing_.size() <= few) &&
+                              round % repair_period == repair_period - 1;
     for (std::size_t k = 0; k < failing_.size(); ++k) {
-      if (!go_on(static_cast<double>(round) / (persistence_ * max_rounds)))
+      if (!go_on(fraction))
         return false;
       const HalfFacet h = failing_[k];
       if (!still_fails(h))
@@ -161,9 +307,7 @@ private:
       ++counts_.swaps;
       return;
     }
-    const Facet<3> t = mesh_.facet(h);
-    const std::array<Index, 5> vertices{t[0], t[1], t[2], mesh_.apex(h),
-                                        mesh_.apex(mesh_.opposite(h))};
+    const std::array<Index, 5> vertices = vertices_at(h);
     const auto first = static_cast<std::size_t>(5 * random.uniform());
     for (std::size_t k = 0; k < 5; ++k) {
       const Index v = vertices[(first + k) % 5];
@@ -173,30 +317,43 @@ private:
       if (!still_fails(h))
         return;
     }
-    if (round >= first_wandering)
-      counts_.moves += relocation_.wander(vertices[first], wandering_radius, random);
+    counts_.moves += relocation_.wander(vertices[first], wandering_radius, random);
   }
 
-  /// Takes back what agreement cost in shape, where it changed something.
-  void polish(std::uint32_t since) {
-    const std::size_t n = mesh_.vertices.size();
-    for (int sweep = 0; sweep < max_polish_sweeps; ++sweep) {
-      std::size_t done = 0;
-      for (std::size_t v = 0; v < n && go_on(1); ++v)
-        if (mesh_.is_used(static_cast<Index>(v)) && volume_.vertex_clock[v] >= since)
-          done += relocation_.polish(static_cast<Index>(v));
-      counts_.polishes += done;
-      if (done == 0)
-        break;
-    }
+  /// Takes back what agreement cost in shape. @returns whether it found something
+  bool polish() {
+    const std::size_t done = move_by_slabs(
+        worse_vertices(),
+        [&](Index v, int slab_round) { return slab_of_vertex(v, slab_round); },
+        [](VolumeRelocation &relocation, Index v) { return relocation.polish(v); });
+    counts_.polishes += done;
     update_list();
+    return done > 0;
+  }
+
+  /// The vertices of cells that are clearly worse than before, or new.
+  [[nodiscard]] std::vector<Index> worse_vertices() const {
+    PerVertex<std::uint8_t> is_worse(mesh_.vertices.size(), 0);
+    for (std::size_t k = 0; k < mesh_.cells.size(); ++k) {
+      const auto c = static_cast<Index>(k);
+      if (mesh_.is_alive(c) && volume_.cell_clock[k] >= start_ &&
+          (k >= quality_before_.size() ||
+           volume_.quality[k] < quality_before_[k] - clear_loss))
+        for (Index v : mesh_.at(c))
+          is_worse[v] = 1;
+    }
+    std::vector<Index> found;
+    for (std::size_t v = 0; v < is_worse.size(); ++v)
+      if (is_worse[v] != 0)
+        found.push_back(static_cast<Index>(v));
+    return found;
   }
 };
 
 } // namespace
 
-AgreementCounts agree(Volume &volume, const Run &run, int persistence) {
-  return VolumeAgreement(volume, run, persistence).run();
+AgreementCounts agree(Volume &volume, const Run &run, const AgreementEffort &effort) {
+  return VolumeAgreement(volume, run).make(effort);
 }
 
 } // namespace anistar

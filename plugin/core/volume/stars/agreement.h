@@ -8,12 +8,23 @@
 
 namespace anistar {
 
-/// Swaps, re-insertions and moves at the facets that fail the five-metric test (see
-/// facet_margin), scored by the exact change in their number; where these are stuck, a
-/// collapse or an insertion; then a polish of the shapes that lets no more facets fail.
-/// The list of failing facets is maintained, the mesh is searched once, on several
-/// threads. No quality falls below agreement_floor that was not below before.
-/// @param persistence so many times the rounds and trials, for what is stuck
-AgreementCounts agree(Volume &volume, const Run &run, int persistence = 1);
+/// How much is tried where directed steps find nothing more.
+struct AgreementEffort {
+  double trials_per_cell; ///< places
+  int patience = 1;       ///< so many times the rounds and trials
+};
+/// What a mesh gets unasked: the directed steps and a little more.
+inline constexpr AgreementEffort small_effort{.trials_per_cell = .1};
+/// As long as it helps. A bound on the trial places: the metrics that could be
+/// certified, but for a few cells, took a third of it.
+inline constexpr AgreementEffort full_effort{.trials_per_cell = 20};
+
+/// Directed steps of the vertices of facets that fail the five-metric test (see
+/// facet_margin); then, at what is left, swaps, re-insertions and random moves, scored
+/// by the exact change in the number of failing facets, and collapses and insertions.
+/// Shapes are polished in between and at the end, such that no more facets fail. The
+/// list of failing facets is maintained, the mesh is searched once, on several threads.
+/// No quality falls below agreement_floor that was not below before.
+AgreementCounts agree(Volume &volume, const Run &run, const AgreementEffort &effort);
 
 } // namespace anistar

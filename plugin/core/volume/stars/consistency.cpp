@@ -37,7 +37,8 @@ constexpr int fewer_failing = -1, most_allowed = 2, rounds_per_facet = 4;
 /// do not, and a facet costs them far less than a cavity. With more patience than the
 /// first time.
 constexpr double agreeable = .05;
-constexpr int agreement_period = 5, agreement_persistence = 5;
+constexpr int agreement_period = 5;
+constexpr AgreementEffort patient_effort{full_effort.trials_per_cell, 5};
 /// The clock is looked at after so many bad cells.
 constexpr std::size_t cells_between_looks = 32;
 /// New vertices keep this distance from the others in their own metric (packing).
@@ -128,7 +129,7 @@ public:
     const bool agreeing = progress_.asks_for_agreement();
     if (agreeing) {
       progress_.since_agreement = 0;
-      counts.moves += agree(volume_, run, agreement_persistence).moves;
+      counts.moves += agree(volume_, run, patient_effort).moves;
     } else {
       change_all(bad, counts);
     }

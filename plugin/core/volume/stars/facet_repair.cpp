@@ -1,6 +1,7 @@
 #include "volume/stars/facet_repair.h"
 
 #include "volume/mesh/vertex_star.h"
+#include "volume/mesh/vertex_trial.h"
 
 namespace anistar {
 namespace {
@@ -29,7 +30,7 @@ AgreementCost FacetRepair::cost_of(std::span<const Index> cells) {
       const bool is_second =
           other.exists() && other.cell() < c && volume_.is_marked_cell(other.cell());
       if (!is_second)
-        cost.add_facet(static_cast<double>(state_.margins.at(h)));
+        cost.add_facet(static_cast<double>(view_.state.margins.at(h)));
     }
   }
   return cost;
@@ -67,10 +68,13 @@ bool FacetRepair::replace(std::span<const Index> cells, Index apex,
   if (!operator_.propose(cells, apex, lost, acceptance) || !is_worth_it(cells, demand))
     return false;
   operator_.commit(cells);
-  state_.margins.extend();
+  AgreementState &state = view_.state;
+  state.extend(volume_.mesh);
   operator_.for_new_cells([&](double, Index c) {
-    state_.margins.forget(c);
-    state_.changed.push_back(c);
+    state.margins.forget(c);
+    view_.changed.push_back(c);
+    for (Index v : volume_.mesh.at(c))
+      state.is_stuck[v] = 0;
   });
   return true;
 }
@@ -98,7 +102,7 @@ bool FacetRepair::remove_edge(Index c, Index a, Index b, Demand demand) {
     if (replace(shell_.all(), shell_.ring[k], {a, b},
                 {.floor = agreement_floor,
                  .gain = 0,
-                 .hausdorff_number = state_.hausdorff_number},
+                 .hausdorff_number = view_.hausdorff_number},
                 demand))
       return true;
   }

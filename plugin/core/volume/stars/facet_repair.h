@@ -2,9 +2,10 @@
 // Changes of topology that make the metrics of a volume mesh agree.
 
 #include "base/monitor.h"
+#include "base/random.h"
 #include "volume/mesh/cavity_operator.h"
 #include "volume/mesh/shell.h"
-#include "volume/stars/relocation.h"
+#include "volume/stars/agreement_state.h"
 
 namespace anistar {
 
@@ -12,9 +13,8 @@ namespace anistar {
 /// in AgreementCost before anything is changed.
 class FacetRepair {
 public:
-  FacetRepair(AgreementState &state, Monitor &monitor)
-      : state_(state), volume_(state.volume), operator_(state.volume),
-        monitor_(monitor) {}
+  FacetRepair(AgreementView &view, Monitor &monitor)
+      : view_(view), volume_(view.volume), operator_(view.volume), monitor_(monitor) {}
 
   /// What the cost must do: go down, or count fewer facets.
   enum class Demand { lower_cost, fewer_failing };
@@ -28,7 +28,7 @@ public:
   bool collapse_or_insert(HalfFacet facet, CounterRandom &random);
 
 private:
-  AgreementState &state_;
+  AgreementView &view_;
   Volume &volume_;
   CavityOperator operator_;
   Monitor &monitor_;

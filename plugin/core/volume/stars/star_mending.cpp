@@ -1,14 +1,118 @@
 #include "volume/stars/star_mending.h"
 
+#include "stars/bad_cells.h"
+#include "stars/certify_all.h"
 #include "stars/star_mending.h"
 #include "volume/stars/relocation.h"
 
 namespace anistar {
+namespace {
+
+constexpr int max_rounds = 8;
+/// More failures than this part of the cells are no accidents of an agreeing mesh.
+constexpr double accidental = .03;
+/// The rounds go on while one leaves less than this part of the failing cells.
+constexpr double good_progress = .9;
+/// From this round on random places are tried too, within this metric distance.
+constexpr int first_random = 1;
+constexpr double random_radius = .1;
+
+class VolumeMender {
+public:
+  VolumeMender(Volume &volume, const Run &run, DelaunayBits &known)
+      : volume_(volume), mesh_(volume.mesh), run_(run), known_(known),
+        test_(certified(mesh_)), state_(mesh_),
+        view_{volume, state_, run.hausdorff.surface, {}}, relocation_(view_) {}
+
+  std::size_t mend() {
+    std::size_t moves = 0;
+    std::vector<Index> failing = failing_cells(mesh_, known_.bits);
+    if (double(failing.size()) > accidental * double(mesh_.n_cells()))
+      return moves;
+    for (int round = 0; round < max_rounds && !failing.empty(); ++round) {
+      const double fraction = double(round) / max_rounds;
+      const std::size_t before = failing.size(), moved = move_at(failing, round);
+      renew(fraction);
+      moves += moved;
+      failing = failing_cells(mesh_, known_.bits);
+      if (moved == 0 || double(failing.size()) > good_progress * double(before) ||
+          !run_.monitor.look(fraction))
+        break;
+    }
+    return moves;
+  }
+
+private:
+  Volume &volume_;
+  const Triangulation<3> &mesh_;
+  const Run &run_;
+  DelaunayBits &known_;
+  DelaunayTest<3> test_;
+  AgreementState state_;
+  AgreementView view_;
+  VolumeRelocation relocation_;
+
+  /// One vertex after another of every violation moves until it is none.
+  std::size_t move_at(const std::vector<Index> &failing, int round) {
+    std::size_t moves = 0;
+    for (const FarViolation &violation : violations(failing)) {
+      CounterRandom random(run_.seed, Stream::mend, violation[0], round);
+      const auto first = static_cast<std::size_t>(5 * random.uniform());
+      for (std::size_t k = 0; k < 5 && is_violated(violation); ++k) {
+        const Index v = violation[(first + k) % 5];
+        moves += relocation_.step(v) ||
+                 (round >= first_random &&
+                  relocation_.relocate(v, random_radius, random));
+      }
+    }
+    return moves;
+  }
+  [[nodiscard]] bool is_violated(const FarViolation &violation) const {
+    return facet_margin(star_of(mesh_, violation)) > 0;
+  }
+
+  /// What makes cells fail. That which no facet tells of is watched from now on.
+  [[nodiscard]] std::vector<FarViolation> violations(const std::vector<Index> &failing) {
+    std::vector<FarViolation> found;
+    for (Index c : failing) {
+      const Cell<3> &cell = mesh_.at(c);
+      for (std::size_t k = 0; k < 4; ++k) {
+        if ((known_.bits[c] >> k & 1) != 0)
+          continue;
+        const Index w = test_.violator(c, mesh_.vertex(cell[k]).M);
+        const FarViolation violation{cell[0], cell[1], cell[2], cell[3], w};
+        if (w == none ||
+            std::find(found.begin(), found.end(), violation) != found.end())
+          continue;
+        found.push_back(violation);
+        if (!is_neighbour(c, w))
+          state_.far.add(violation);
+      }
+    }
+    return found;
+  }
+  [[nodiscard]] bool is_neighbour(Index c, Index w) const {
+    for (std::size_t i = 0; i < 4; ++i)
+      if (const HalfFacet beyond = mesh_.opposite(HalfFacet(c, i));
+          beyond.exists() && mesh_.apex(beyond) == w)
+        return true;
+    return false;
+  }
+
+  /// Decides again for what depends on the cells that have changed: to the end, or the
+  /// answers would be those of another mesh.
+  void renew(double fraction) {
+    renew_bits<3>(certified(mesh_),
+                  dependent_cells<3>(mesh_.neighbours, view_.changed, known_.reach),
+                  run_.threads, to_the_end(run_.monitor, fraction), known_);
+    view_.changed.clear();
+  }
+};
+
+} // namespace
 
 std::size_t mend_stars(Volume &volume, const Run &run, DelaunayBits &known) {
-  AgreementState state(volume, run.hausdorff.surface);
-  VolumeRelocation relocation(state);
-  return mend_failures(volume.mesh, relocation, run, known);
+  return VolumeMender(volume, run, known).mend();
 }
 
 } // namespace anistar

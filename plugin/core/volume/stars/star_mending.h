@@ -1,6 +1,6 @@
 #pragma once
-// Vertices are moved at the few failures of the certificate that no test on one facet
-// can see.
+// Vertices are moved at the failures of the certificate that no test on one facet can
+// see.
 
 #include "base/run.h"
 #include "certificate/certificate.h"
@@ -8,9 +8,10 @@
 
 namespace anistar {
 
-/// Moves vertices such that fewer cells fail; no more facets fail then, no quality
-/// falls below agreement_floor and no edge becomes worse. Vertices on surfaces and
-/// ridges slide along them.
+/// Moves vertices by directed steps such that fewer cells fail: a vertex inside of the
+/// ball of a cell that is no neighbour of its is watched like a facet from then on (see
+/// FarViolations). No more facets fail then, no quality falls below agreement_floor and
+/// no edge becomes worse. Vertices on surfaces and ridges slide along them.
 /// @param known the answers for the mesh, before and after
 /// @returns the number of moves
 std::size_t mend_stars(Volume &volume, const Run &run, DelaunayBits &known);

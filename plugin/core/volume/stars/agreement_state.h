@@ -1,0 +1,38 @@
+#pragma once
+// What agreement knows of a volume mesh.
+
+#include "volume/stars/far_violations.h"
+#include "volume/stars/facet_margins.h"
+
+namespace anistar {
+
+/// For all threads. What belongs to cells and vertices of a slab is changed by the
+/// thread that changes these.
+struct AgreementState {
+  explicit AgreementState(const Triangulation<3> &mesh)
+      : margins(mesh), is_stuck(mesh.vertices.size(), 0) {}
+
+  FacetMargins margins;
+  FarViolations far;
+  /// Vertices that found no directed step, and around which nothing has changed since.
+  PerVertex<std::uint8_t> is_stuck;
+
+  /// For cells and vertices that were added to the mesh.
+  void extend(const Triangulation<3> &mesh) {
+    margins.extend();
+    is_stuck.resize(mesh.vertices.size(), 0);
+  }
+};
+
+/// What one thread sees of it, and of the mesh.
+struct AgreementView {
+  Volume &volume;
+  AgreementState &state;
+  double hausdorff_number;    ///< of curved surfaces, relative to an edge
+  std::vector<Index> changed; ///< cells, some of them more than once
+};
+
+/// The quality below which nothing may fall that was not below before.
+inline constexpr double agreement_floor = .5;
+
+} // namespace anistar

@@ -1,0 +1,167 @@
+#include "volume/stars/moving_vertex.h"
+
+namespace anistar {
+namespace {
+
+/// Edges outside of this range are penalised, short ones more: they cost vertices.
+constexpr double shortest_free = .58, longest_free = 1.65;
+constexpr double short_weight = 10, long_weight = 4;
+/// What edges may become worse by, for round-off.
+constexpr double round_off = 1e-9;
+/// Facets with a margin above decide about most places: they are tested first.
+constexpr double critical_margin = -.03;
+
+} // namespace
+
+bool MovingVertex::gather_star(Index v) {
+  if (volume_.feature(v) == Triangulation<3>::corner)
+    return false;
+  v_ = v;
+  star_of(volume_, v, star_);
+  return trial_.gather(v, star_);
+}
+
+bool MovingVertex::gather_around() {
+  const Triangulation<3> &mesh = volume_.mesh;
+  facets_.clear();
+  safe_.clear();
+  ring_.clear();
+  failing_facets_ = 0;
+  volume_.open_vertices();
+  volume_.mark_vertex(v_);
+  for (Index c : star_) {
+    const std::size_t at = mesh.local_index(c, v_);
+    for (Index u : facet_of<3>(mesh.at(c), at))
+      if (volume_.mark_vertex(u))
+        ring_.push_back(u);
+    if (!gather_facets(c, at))
+      return false;
+  }
+  gather_far_violations();
+  facets_.insert(facets_.end(), safe_.begin(), safe_.end());
+  return true;
+}
+
+/// The facets of a cell of the star that have another side and are no walls; those at v
+/// from one of their cells only. @param at where v is in the cell
+bool MovingVertex::gather_facets(Index c, std::size_t at) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const HalfFacet h(c, i), other = mesh.opposite(h);
+    if (!other.exists() || (i != at && other.cell() < c) || mesh.constraint(h) != none)
+      continue;
+    if (volume_.slab && !volume_.is_inside(mesh.apex(other))) {
+      volume_.is_put_off = true;
+      return false;
+    }
+    add(h, facet_star(mesh, h), static_cast<double>(view_.state.margins.at(h)));
+  }
+  return true;
+}
+
+void MovingVertex::gather_far_violations() {
+  for (const FarViolation &violation : view_.state.far.at(v_)) {
+    const FacetStar star = star_of(volume_.mesh, violation);
+    add(HalfFacet(), star, facet_margin(star));
+  }
+}
+
+void MovingVertex::add(HalfFacet at, FacetStar star, double here) {
+  for (const Vertex<3> *&vertex : star)
+    if (vertex == &home())
+      vertex = &trial_.vertex();
+  failing_facets_ += at.exists() && here > 0;
+  (here > critical_margin ? facets_ : safe_).push_back({at, star, here});
+}
+
+PlaceScore MovingVertex::score_here() const {
+  PlaceScore score;
+  for (Index c : star_)
+    score.cost.add_cell(volume_.quality_of(c));
+  score.quality_min = trial_.least_before();
+  for (const TestedFacet &facet : facets_)
+    score.cost.add_facet(facet.here);
+  score.lengths = length_penalty(home());
+  return score;
+}
+
+double MovingVertex::length_penalty(const Vertex<3> &at) const {
+  double penalty = 0;
+  for (Index u : ring_) {
+    const double l = fast_length(volume_.mesh.vertex(u), at);
+    penalty += short_weight * std::max(0., shortest_free - l) +
+               long_weight * std::max(0., l - longest_free);
+  }
+  return penalty;
+}
+
+bool MovingVertex::place(const Vector<3> &x) {
+  trial_.place(x);
+  if (!is_in_range<3>(trial_.vertex().x) || !trial_.is_positive() ||
+      !trial_.keeps_surfaces())
+    return false;
+  trial_.take_metric();
+  ++trials_;
+  return true;
+}
+
+std::optional<PlaceScore> MovingVertex::evaluate(double floor, double limit) {
+  const StarShapes &shapes = trial_.measure();
+  PlaceScore score;
+  score.quality_min = shapes.minimum();
+  if (score.quality_min < floor || score.quality_min <= 0)
+    return {};
+  for (std::size_t k = 0; k < star_.size(); ++k)
+    score.cost.add_cell(static_cast<double>(shapes.quality(k)));
+  score.lengths = length_penalty(trial_.vertex());
+  margins_.clear();
+  int failing_facets = 0;
+  for (const TestedFacet &facet : facets_) {
+    margins_.push_back(facet_margin(facet.star));
+    score.cost.add_facet(margins_.back());
+    failing_facets += facet.at.exists() && margins_.back() > 0;
+    if (score.total() >= limit)
+      return {};
+  }
+  if (failing_facets > failing_facets_ && !view_.state.far.empty())
+    return {};
+  return score;
+}
+
+bool MovingVertex::has_shapes(double floor, double sum) {
+  const StarShapes &shapes = trial_.measure();
+  return shapes.minimum() >= floor && shapes.minimum() > 0 && shapes.sum() >= sum;
+}
+
+bool MovingVertex::disagrees_no_more(const PlaceScore &before) {
+  if (length_penalty(trial_.vertex()) > before.lengths + round_off)
+    return false;
+  margins_.clear();
+  int failing = 0;
+  for (const TestedFacet &facet : facets_) {
+    margins_.push_back(facet_margin(facet.star));
+    failing += margins_.back() > 0;
+    if (failing > before.cost.failing)
+      return false;
+  }
+  return true;
+}
+
+void MovingVertex::remember() {
+  trial_.remember(best_);
+  best_margins_.swap(margins_);
+}
+
+void MovingVertex::move_to_best() {
+  trial_.commit(best_);
+  view_.changed.insert(view_.changed.end(), star_.begin(), star_.end());
+  for (std::size_t k = 0; k < facets_.size(); ++k)
+    if (facets_[k].at.exists())
+      view_.state.margins.put(facets_[k].at, as_margin(best_margins_[k]));
+  PerVertex<std::uint8_t> &is_stuck = view_.state.is_stuck;
+  is_stuck[v_] = 0;
+  for (Index u : ring_)
+    is_stuck[u] = 0;
+}
+
+} // namespace anistar
