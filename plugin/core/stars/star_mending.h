@@ -3,6 +3,7 @@
 // mends them by moving vertices; for meshes of triangles and of tetrahedra.
 
 #include "base/run.h"
+#include "certificate/delaunay_test.h"
 #include "stars/rules.h"
 
 #include <algorithm>

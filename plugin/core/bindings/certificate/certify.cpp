@@ -2,6 +2,7 @@
 #include "bindings/bind.h"
 #include "bindings/support/geometry.h"
 #include "bindings/support/interrupt.h"
+#include "certificate/delaunay_test.h"
 
 namespace anistar::bindings {
 namespace {

@@ -1,6 +1,6 @@
 #include "bindings/for_tests/bind.h"
 #include "bindings/support/geometry.h"
-#include "certificate/certify.h"
+#include "certificate/circumball.h"
 #include "certificate/facet_test.h"
 
 namespace anistar::bindings {
