@@ -21,11 +21,12 @@ namespace anistar {
 template <std::size_t d>
 inline constexpr std::uint8_t all_vertices = (1u << (d + 1)) - 1;
 
-/// Bit k of bits[c]: cell c is Delaunay in the metric of its vertex k. The answer
-/// looked reach[c] cells away, at most `farthest_reach`: it holds as long as these do
-/// not change.
+/// Bit k of bits[c]: cell c is Delaunay in the metric of its vertex k. The answers for
+/// the metric of v looked reach[v] cells away from the star of v, at most
+/// `farthest_reach`: they hold as long as these and the star do not change.
 struct DelaunayBits {
-  std::vector<std::uint8_t> bits, reach;
+  PerCell<std::uint8_t> bits;
+  PerVertex<std::uint8_t> reach;
 };
 /// Hears now and then, on the calling thread, which part is done; what it throws ends
 /// the work, and so does false.
@@ -35,16 +36,10 @@ template <std::size_t d>
 [[nodiscard]] DelaunayBits delaunay_bits(CertifiedMesh<d> mesh, int threads,
                                          const Look &look);
 
-/// Decides again for some cells.
+/// Decides again for the stars whose answers can depend on cells that have changed or
+/// are new: those that looked as far as one of them.
 template <std::size_t d>
-void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> cells, int threads,
+void renew_bits(CertifiedMesh<d> mesh, std::span<const Index> changed, int threads,
                 const Look &look, DelaunayBits &known);
-
-/// The cells whose answer can depend on a changed one: those that looked as far as it.
-/// New cells are changed ones, and have the reach 0.
-template <std::size_t d>
-[[nodiscard]] std::vector<Index>
-dependent_cells(std::span<const Neighbours<d>> neighbours,
-                std::span<const Index> changed, std::span<const std::uint8_t> reach);
 
 } // namespace anistar

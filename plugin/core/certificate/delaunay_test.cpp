@@ -57,6 +57,7 @@ template <std::size_t d>
 Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
   const auto cell_at = [&](Index c) -> const Cell<d> & { return mesh_.cells[c]; };
   begin_walk();
+  reach_ = 0;
   Simplex<d> simplex;
   for (std::size_t k = 0; k <= d; ++k) {
     const std::size_t v = cell_at(cell)[k];
@@ -86,17 +87,10 @@ Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
 }
 
 template <std::size_t d> std::uint8_t DelaunayTest<d>::bits(Index cell) {
-  const Cell<d> &vertices = mesh_.cells[cell];
-  const auto metric = [&](unsigned k) -> const SymmetricTensor<d> & {
-    return mesh_.vertices[vertices[k]].M;
-  };
   unsigned found = 0;
-  reach_ = 0;
   for (unsigned k = 0; k <= d; ++k) {
-    unsigned same = 0; // the first vertex with this metric
-    while (same < k && metric(same).entries != metric(k).entries)
-      ++same;
-    if (same < k ? found >> same & 1 : violator(cell, metric(k)) == none)
+    const std::size_t v = mesh_.cells[cell][k];
+    if (violator(cell, mesh_.vertices[v].M) == none)
       found |= 1u << k;
   }
   return static_cast<std::uint8_t>(found);

@@ -18,11 +18,13 @@ public:
   /// The first vertex found inside the M-circumball of `cell` that it can reach, `none`
   /// when it is Delaunay.
   [[nodiscard]] Index violator(Index cell, const SymmetricTensor<d> &M);
+  /// How many cells away the last call of violator() looked.
+  [[nodiscard]] std::uint8_t reach() const { return reach_; }
+  /// And at how many.
+  [[nodiscard]] std::size_t n_visits() const { return front_.size(); }
 
   /// Bit k: the cell is Delaunay in the metric of its vertex k.
   [[nodiscard]] std::uint8_t bits(Index cell);
-  /// How many cells away the last answer of bits() looked.
-  [[nodiscard]] std::uint8_t reach() const { return reach_; }
 
 private:
   /// The power of a vertex in the ball of this epoch.

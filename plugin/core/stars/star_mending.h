@@ -4,6 +4,7 @@
 
 #include "base/run.h"
 #include "certificate/delaunay_test.h"
+#include "stars/certify_all.h"
 #include "stars/rules.h"
 
 #include <algorithm>
@@ -17,9 +18,6 @@ template <std::size_t d> class StarFailures {
 public:
   explicit StarFailures(const Triangulation<d> &mesh)
       : mesh_(mesh), test_(certified(mesh)), seen_(mesh.cells.size(), 0) {}
-
-  /// As the certificate sees one cell now.
-  [[nodiscard]] DelaunayTest<d> &test() { return test_; }
 
   /// Vertices whose move could mend a cell: those found inside of its balls, its own,
   /// and those across its facets. Empty when it does not fail.
@@ -138,8 +136,8 @@ template <std::size_t d>
 /// tells whether one was accepted; else v is where it was
 template <std::size_t d, class Relocation> class StarMender {
 public:
-  StarMender(const Triangulation<d> &mesh, Relocation &relocation, Seed seed)
-      : mesh_(mesh), relocation_(relocation), failures_(mesh), seed_(seed) {}
+  StarMender(const Triangulation<d> &mesh, Relocation &relocation, const Run &run)
+      : mesh_(mesh), relocation_(relocation), failures_(mesh), run_(run) {}
 
   /// Moves the vertex inside the ball of a failing cell, one of its own or one across
   /// its facets, such that fewer cells around fail. @returns whether it found a move.
@@ -147,7 +145,7 @@ public:
     for (Index v : failures_.culprits(cell)) { // none when an earlier move mended it
       failures_.surround(relocation_.star(v));
       const int failing = failures_.count();
-      CounterRandom random(seed_, Stream::mend, v, round);
+      CounterRandom random(run_.seed, Stream::mend, v, round);
       if (!relocation_.relocate_where(v, farthest, random, [&] {
             return failures_.count_moved(v, failing) < failing;
           }))
@@ -159,12 +157,11 @@ public:
     return false;
   }
   void know(const DelaunayBits &known) { failures_.know(known.bits); }
-  /// Decides again for the cells that depend on those that have changed.
-  void renew(DelaunayBits &known) {
-    for (Index c : dependent_cells<d>(mesh_.neighbours, changed_, known.reach)) {
-      known.bits[c] = failures_.test().bits(c);
-      known.reach[c] = failures_.test().reach();
-    }
+  /// Decides again where cells have changed, `done` being the part of the rounds
+  /// behind.
+  void renew(DelaunayBits &known, double done) {
+    renew_bits<d>(certified(mesh_), changed_, run_.threads,
+                  to_the_end(run_.monitor, done), known);
     changed_.clear();
   }
 
@@ -175,7 +172,7 @@ private:
   const Triangulation<d> &mesh_;
   Relocation &relocation_;
   StarFailures<d> failures_;
-  Seed seed_;
+  const Run &run_;
   std::vector<Index> changed_; ///< cells
 };
 
@@ -194,7 +191,7 @@ std::size_t mend_failures(const Triangulation<d> &mesh, Relocation &relocation,
   if (failing.empty() || static_cast<double>(failing.size()) >
                              accidental * static_cast<double>(mesh.n_cells()))
     return moves;
-  StarMender<d, Relocation> mender(mesh, relocation, run.seed);
+  StarMender<d, Relocation> mender(mesh, relocation, run);
   const auto go_on = [&](int round) {
     return run.monitor.look(double(round) / max_rounds);
   };
@@ -207,7 +204,7 @@ std::size_t mend_failures(const Triangulation<d> &mesh, Relocation &relocation,
     if (moved == 0)
       break;
     moves += moved;
-    mender.renew(known);
+    mender.renew(known, double(round) / max_rounds);
     failing = failing_cells(mesh, known.bits);
   }
   return moves;

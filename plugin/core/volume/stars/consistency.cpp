@@ -189,15 +189,12 @@ private:
   /// Decides again where the mesh has changed since the clock showed `since`: all of
   /// it, or the bits would be those of another mesh.
   void renew(std::uint32_t since, double fraction, DelaunayBits &known) {
-    known.bits.resize(mesh_.cells.size(), 0);
-    known.reach.resize(mesh_.cells.size(), 0);
     std::vector<Index> changed;
     for (std::size_t c = 0; c < mesh_.cells.size(); ++c)
       if (mesh_.is_alive(static_cast<Index>(c)) && volume_.cell_clock[c] >= since)
         changed.push_back(static_cast<Index>(c));
-    renew_bits<3>(certified(mesh_),
-                  dependent_cells<3>(mesh_.neighbours, changed, known.reach),
-                  run_.threads, to_the_end(run_.monitor, fraction), known);
+    renew_bits<3>(certified(mesh_), changed, run_.threads,
+                  to_the_end(run_.monitor, fraction), known);
   }
 
   [[nodiscard]] bool is_touched(Index v) const {
