@@ -186,17 +186,22 @@ template <std::size_t d> void StarTest<d>::see(std::uint32_t vertex) {
       p.sq_error + error_ * p.length + length_ * p.z_error + Bounded::underflow;
   near.least = p.square - most - blur;
   if (!(near.least > 0)) {
-    find_inside(vertex);
+    find_inside(vertex, blur);
     near.least = 0;
   }
   near.root = (1 - slack) * std::sqrt(near.least);
 }
 
 /// Finds the open cells in whose balls a vertex lies.
-template <std::size_t d> void StarTest<d>::find_inside(std::uint32_t vertex) {
+/// @param blur bounds the error of its powers
+template <std::size_t d>
+void StarTest<d>::find_inside(std::uint32_t vertex, double blur) {
+  const StarPoint<d> &p = vertices_[vertex].at;
   const Index own = vertices_[vertex].vertex;
   for (std::size_t place = 0; place < star_.size(); ++place) {
-    if (answers_[place] != Answer::open || !lies_inside(place, vertex))
+    if (answers_[place] != Answer::open ||
+        p.square - balls_[place].gradient.dot(p.z) > blur ||
+        !lies_inside(place, vertex))
       continue;
     answers_[place] = is_across(place, own) ? Answer::no : Answer::doubtful;
     gradients_.row(static_cast<Eigen::Index>(place)).setZero();

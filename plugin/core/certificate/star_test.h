@@ -113,7 +113,7 @@ private:
   void begin_walk();
   void pass(HalfFacet door, std::uint8_t depth);
   void see(std::uint32_t vertex);
-  void find_inside(std::uint32_t vertex);
+  void find_inside(std::uint32_t vertex, double blur);
   void go_on(const Visit &at);
   [[nodiscard]] bool may_meet(const Numbers &corners, std::size_t facet) const;
 };
