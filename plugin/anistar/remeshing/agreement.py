@@ -19,8 +19,6 @@ def agreement_text(found: AgreementReport, dim: int) -> str:
     match found.outcome:
         case AgreementOutcome.off:
             return "off"
-        case AgreementOutcome.not_asked:
-            return "skipped: not asked for, and in 3D it takes as long as the remeshing"
         case AgreementOutcome.stopped_before:
             return f"skipped: stopped by {found.stopped_by.name}"
         case AgreementOutcome.varies_too_fast:

@@ -32,7 +32,6 @@ struct AgreementCounts {
 /// What became of agreement. Those before `stopped` left the mesh as it was.
 enum class AgreementOutcome {
   off,             ///< not wanted
-  not_asked,       ///< it takes too long to be done unasked
   stopped_before,  ///< a budget had been spent
   varies_too_fast, ///< the metric, see ln_gamma
   stopped,         ///< by a budget

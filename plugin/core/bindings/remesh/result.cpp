@@ -148,7 +148,6 @@ nb::typed<nb::dict, nb::str, nb::float_> as_dict(const ConsistencyCounts &counts
 void bind_agreement(nb::module_ &module) {
   nb::enum_<AgreementOutcome>(module, "AgreementOutcome")
       .value("off", AgreementOutcome::off)
-      .value("not_asked", AgreementOutcome::not_asked)
       .value("stopped_before", AgreementOutcome::stopped_before)
       .value("varies_too_fast", AgreementOutcome::varies_too_fast)
       .value("stopped", AgreementOutcome::stopped)

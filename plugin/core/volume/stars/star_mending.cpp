@@ -1,6 +1,6 @@
 #include "volume/stars/star_mending.h"
 
-#include "stars/bad_cells.h"
+#include "certificate/delaunay_test.h"
 #include "stars/certify_all.h"
 #include "stars/star_mending.h"
 #include "volume/stars/relocation.h"
@@ -81,8 +81,7 @@ private:
           continue;
         const Index w = test_.violator(c, mesh_.vertex(cell[k]).M);
         const FarViolation violation{cell[0], cell[1], cell[2], cell[3], w};
-        if (w == none ||
-            std::find(found.begin(), found.end(), violation) != found.end())
+        if (w == none || (!found.empty() && found.back() == violation))
           continue;
         found.push_back(violation);
         if (!is_neighbour(c, w))
@@ -102,9 +101,8 @@ private:
   /// Decides again for what depends on the cells that have changed: to the end, or the
   /// answers would be those of another mesh.
   void renew(double fraction) {
-    renew_bits<3>(certified(mesh_),
-                  dependent_cells<3>(mesh_.neighbours, view_.changed, known_.reach),
-                  run_.threads, to_the_end(run_.monitor, fraction), known_);
+    renew_bits<3>(certified(mesh_), view_.changed, run_.threads,
+                  to_the_end(run_.monitor, fraction), known_);
     view_.changed.clear();
   }
 };
