@@ -8,25 +8,30 @@ namespace anistar {
 
 namespace {
 
-template <std::size_t d> std::size_t lowest(const Facet<d> &facet) {
-  Index low = facet[0];
-  for (std::size_t i = 1; i < d; ++i)
-    low = std::min(low, facet[i]);
-  return static_cast<std::size_t>(low);
+/// The vertices of a facet.
+struct FacetKey {
+  std::size_t lowest;
+  std::uint64_t others; ///< in increasing order, as one number
+};
+
+FacetKey key_of(const Facet<2> &facet) {
+  const auto [low, high] = std::minmax(facet[0], facet[1]);
+  return {static_cast<std::size_t>(low), static_cast<std::uint64_t>(high)};
 }
 
-/// The vertices of a facet in increasing order.
-template <std::size_t d> Facet<d> sorted(Facet<d> facet) {
-  if (facet[1] < facet[0])
-    std::swap(facet[0], facet[1]);
-  if constexpr (d == 3) {
-    if (facet[2] < facet[1])
-      std::swap(facet[1], facet[2]);
-    if (facet[1] < facet[0])
-      std::swap(facet[0], facet[1]);
-  }
-  return facet;
+FacetKey key_of(const Facet<3> &facet) {
+  const auto [a, b] = std::minmax(facet[0], facet[1]);
+  const Index low = std::min(a, facet[2]), high = std::max(b, facet[2]);
+  const Index middle = std::max(a, std::min(b, facet[2]));
+  return {static_cast<std::size_t>(low),
+          static_cast<std::uint64_t>(middle) << 32 | static_cast<std::uint64_t>(high)};
 }
+
+/// A half-facet among those with the same lowest vertex.
+struct Candidate {
+  std::uint64_t others;
+  HalfFacet half;
+};
 
 } // namespace
 
@@ -38,36 +43,34 @@ std::vector<Neighbours<d>> adjacency(std::span<const Cell<d>> cells,
   std::vector<Index> start(n_points + 1, 0);
   for (const Cell<d> &cell : cells)
     for (std::size_t i = 0; i <= d; ++i)
-      ++start[lowest<d>(facet_of<d>(cell, i)) + 1];
+      ++start[key_of(facet_of<d>(cell, i)).lowest + 1];
   for (std::size_t v = 0; v < n_points; ++v)
     start[v + 1] += start[v];
-  std::vector<HalfFacet> halves(cells.size() * (d + 1));
+  std::vector<Candidate> candidates(cells.size() * (d + 1));
   std::vector<Index> fill(start.begin(), start.end() - 1);
   for (std::size_t c = 0; c < cells.size(); ++c)
-    for (std::size_t i = 0; i <= d; ++i)
-      halves[fill[lowest<d>(facet_of<d>(cells[c], i))]++] =
-          HalfFacet(static_cast<Index>(c), i);
+    for (std::size_t i = 0; i <= d; ++i) {
+      const FacetKey key = key_of(facet_of<d>(cells[c], i));
+      candidates[fill[key.lowest]++] = {key.others,
+                                        HalfFacet(static_cast<Index>(c), i)};
+    }
   const auto side_of = [&](HalfFacet half) -> HalfFacet & {
     return neighbours[half.cell()][half.facet()];
   };
-  std::vector<Facet<d>> facets; // of the bucket
   for (std::size_t v = 0; v < n_points; ++v) {
-    const std::span bucket(halves.begin() + start[v], halves.begin() + start[v + 1]);
-    facets.clear();
-    for (HalfFacet half : bucket)
-      facets.push_back(sorted<d>(facet_of<d>(cells[half.cell()], half.facet())));
+    const std::span bucket(candidates.begin() + start[v],
+                           candidates.begin() + start[v + 1]);
     for (std::size_t p = 0; p < bucket.size(); ++p)
       for (std::size_t q = p + 1; q < bucket.size(); ++q) {
-        // the lowest vertex is the same
-        if (facets[p][1] != facets[q][1] || facets[p].back() != facets[q].back())
+        if (bucket[p].others != bucket[q].others)
           continue;
-        HalfFacet &side = side_of(bucket[p]), &other = side_of(bucket[q]);
+        HalfFacet &side = side_of(bucket[p].half), &other = side_of(bucket[q].half);
         if (side.exists() || other.exists())
           throw std::invalid_argument("a facet of cell " +
-                                      std::to_string(bucket[p].cell()) +
+                                      std::to_string(bucket[p].half.cell()) +
                                       " is shared by more than two cells");
-        side = bucket[q];
-        other = bucket[p];
+        side = bucket[q].half;
+        other = bucket[p].half;
       }
   }
   return neighbours;
