@@ -42,45 +42,44 @@ class MeshArrays:
     @property
     def corners(self) -> NDArray[numpy.int32]: ...
 
-def certify2(
-    points: NDArray[numpy.float64],
-    cells: NDArray[numpy.int32],
-    metric: NDArray[numpy.float64],
-    facets: NDArray[numpy.int32],
-    threads: int,
-) -> dict:
-    """The certificate of a mesh for the metric at its points."""
-
-def delaunay_violator2(
-    points: NDArray[numpy.float64],
-    cells: NDArray[numpy.int32],
-    facets: NDArray[numpy.int32],
-    cell: int,
-    metric: NDArray[numpy.float64],
-) -> int:
+class MetricMesh:
     """
-    A vertex that the cell reaches inside its circumsphere for one metric, -1 when it is Delaunay.
+    A mesh with its walls and the metric at its points, which are not copied: what a certificate says of it.
     """
 
-def certify3(
-    points: NDArray[numpy.float64],
-    cells: NDArray[numpy.int32],
-    metric: NDArray[numpy.float64],
-    facets: NDArray[numpy.int32],
-    threads: int,
-) -> dict:
-    """The certificate of a mesh for the metric at its points."""
+    def __init__(
+        self,
+        *,
+        points: NDArray[numpy.float64],
+        cells: NDArray[numpy.int32],
+        facets: NDArray[numpy.int32],
+        metric: NDArray[numpy.float64],
+    ) -> None: ...
+    def delaunay(self, *, threads: int) -> NDArray[numpy.uint8]:
+        """Per cell, bit k: it is Delaunay in the metric of its vertex k."""
 
-def delaunay_violator3(
-    points: NDArray[numpy.float64],
-    cells: NDArray[numpy.int32],
-    facets: NDArray[numpy.int32],
-    cell: int,
-    metric: NDArray[numpy.float64],
-) -> int:
-    """
-    A vertex that the cell reaches inside its circumsphere for one metric, -1 when it is Delaunay.
-    """
+    def delaunay_across_interfaces(self, *, threads: int) -> NDArray[numpy.uint8] | None:
+        """
+        The same where interfaces are no walls; None where there is no interface.
+        """
+
+    def exempt(self, *, star_ok: NDArray[numpy.uint8]) -> NDArray[numpy.uint8]:
+        """Per vertex, whether its star fails and may, at a sharp corner."""
+
+    def distortion(self, *, threads: int) -> NDArray[numpy.float64]:
+        """Per vertex, the largest distortion along its edges."""
+
+    def circumspheres(
+        self, *, delaunay: NDArray[numpy.uint8], threads: int
+    ) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], tuple[int, int], tuple[int, int]]:
+        """
+        Per cell the radius-edge ratio and the sliverity; and for both versions of the paper (how many, of how many) cells are in the restricted stars of all their vertices.
+        """
+
+    def violator(self, *, cell: int, metric: NDArray[numpy.float64]) -> int:
+        """
+        A vertex that the cell reaches inside its circumsphere for one metric, -1 when it is Delaunay.
+        """
 
 def intersect(
     first: NDArray[numpy.float64], second: NDArray[numpy.float64]

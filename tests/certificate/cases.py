@@ -6,6 +6,13 @@ from scipy.spatial import Delaunay
 
 from anistar.meshes.mesh import Mesh
 
+#: What a certificate says, by name.
+FIGURES = (
+    *("simplex_ok", "star_ok", "exempt", "verdict", "delaunay"),
+    *("distortion", "radius_edge", "sliverity"),
+    *("stars_without_interfaces", "restricted_v1", "restricted_v2"),
+)
+
 
 def metric_of(angle, sizes):
     """The metric with the given sizes along the axes turned by `angle`."""

@@ -7,21 +7,21 @@ import tetrahedra
 from meshes import cube
 from scipy.spatial import Delaunay
 
-from anistar import _core, _core_for_tests
+from anistar import _core_for_tests
 from anistar.judging.certificate import certify
+from anistar.judging.metric_mesh import MetricMesh
 from anistar.meshes.mesh import Mesh
 from anistar.meshes.validation import validate
 
-VIOLATOR = {2: _core.delaunay_violator2, 3: _core.delaunay_violator3}
 RENEWED = {2: _core_for_tests.renewed_bits2, 3: _core_for_tests.renewed_bits3}
 
 
 def cell_by_cell(mesh, metric):
     """(m, d + 1): the exact walk of the definition, for every cell and each of its vertices."""
-    violator = VIOLATOR[mesh.points.shape[1]]
+    core = MetricMesh.of(mesh, metric).core()
     return np.array(
         [
-            [violator(mesh.points, mesh.cells, mesh.facets, c, metric[v]) < 0 for v in cell]
+            [core.violator(cell=c, metric=metric[v]) < 0 for v in cell]
             for c, cell in enumerate(mesh.cells)
         ]
     )
@@ -128,9 +128,8 @@ def test_a_hub_of_very_many_cells_is_decided_as_any_other():
     found = certify(mesh, metric).delaunay
     assert 0 < found.mean() < 1
     some = np.random.default_rng(6).choice(n, 50)
-    expected = [
-        _core.delaunay_violator2(points, cells, mesh.facets, int(c), metric[0]) < 0 for c in some
-    ]
+    core = MetricMesh.of(mesh, metric).core()
+    expected = [core.violator(cell=int(c), metric=metric[0]) < 0 for c in some]
     assert np.array_equal(found[some, 0], expected)
 
 

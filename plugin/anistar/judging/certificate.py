@@ -4,25 +4,48 @@ from __future__ import annotations
 
 import math
 import operator
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import _core
 from ..base.arrays import Bools, Floats
 from ..base.core_errors import meshing_errors
 from ..base.report import as_builtin, attributes
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
 from ..metric.kernels.algebra import solved
+from .metric_mesh import Bytes, MetricMesh, kept_proof
 
 Count = tuple[int, int]
 """How many, of how many."""
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False)
+class _Judged:
+    """What a certificate was made of, and what was found first."""
+
+    mesh: MetricMesh
+    bits: Bytes
+    threads: int
+
+    def delaunay(self) -> Bools:
+        corners = np.arange(self.mesh.cells.shape[1], dtype=np.uint8)
+        return (self.bits[:, None] >> corners & 1).astype(bool)
+
+    def simplex_ok(self) -> Bools:
+        return np.asarray(self.bits == (1 << self.mesh.cells.shape[1]) - 1)
+
+    def star_ok(self) -> Bools:
+        ok = np.ones(len(self.mesh.points), dtype=bool)
+        failing = ~self.simplex_ok()
+        ok[self.mesh.cells[failing][~self.delaunay()[failing]]] = False
+        return ok
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Certificate:
     """What is Delaunay in a mesh, each simplex tested in the metrics of its vertices.
 
@@ -36,13 +59,6 @@ class Certificate:
         Simplices that are Delaunay in the metrics of all their vertices: certified.
     star_ok : (n,) bool
         Vertices all of whose simplices are Delaunay in the metric of the vertex: certified.
-    distortion : (n,) float64
-        Largest distortion between the metric of a vertex and that of a neighbour, at least 1.
-    radius_edge : (m,) float64
-        Circumradius over shortest edge, the largest value that a metric of its vertices gives.
-    sliverity : (m,) float64
-        ``(volume / e**d)**(1 / d)`` with the shortest edge e, the smallest value that a metric of
-        its vertices gives: 0 for a sliver, 0.49 for a regular tetrahedron, 0.66 for a triangle.
     exempt : (n,) bool
         Vertices that fail and may: in the first shell of a corner below 30 degrees, at most 8
         for each corner. In 2D a corner is a vertex between two walls; in 3D an edge between two
@@ -52,12 +68,11 @@ class Certificate:
         One line with `simplex_ok` and `star_ok` by name, and the number of exempt vertices.
     delaunay : (m, d + 1) bool
         Whether a simplex is Delaunay in the metric of each of its vertices.
-    stars_without_interfaces : (int, int)
-        Stars certified when the walk crosses interfaces too (not the boundary), of all.
-    restricted_v1, restricted_v2 : (int, int)
-        Simplices that are in the paper's restricted stars of all their vertices, of those whose
-        circumcentre lies in the domain: in the metrics of all vertices (`v1`: [2], section 3),
-        or of one at least (`v2`: [1], section 3).
+
+    Notes
+    -----
+    The other figures are worked out when they are first looked at, of the mesh as it was when it
+    was certified.
 
     References
     ----------
@@ -68,15 +83,71 @@ class Certificate:
 
     simplex_ok: Bools
     star_ok: Bools
-    distortion: Floats
-    radius_edge: Floats
-    sliverity: Floats
     exempt: Bools
     verdict: str
     delaunay: Bools
-    stars_without_interfaces: Count
-    restricted_v1: Count
-    restricted_v2: Count
+    judged: InitVar[_Judged]
+
+    def __post_init__(self, judged: _Judged) -> None:
+        object.__setattr__(self, "_judged", judged)
+
+    @cached_property
+    def distortion(self) -> Floats:
+        """Largest distortion (n,) between the metric of a vertex and a neighbour's, at least 1."""
+        with meshing_errors():
+            return self._of.mesh.core().distortion(threads=self._of.threads)
+
+    @cached_property
+    def radius_edge(self) -> Floats:
+        """Circumradius over shortest edge (m,), the largest that a metric of its vertices gives."""
+        return self._circumspheres[0]
+
+    @cached_property
+    def sliverity(self) -> Floats:
+        """``(volume / e**d)**(1 / d)`` (m,) with the shortest edge e.
+
+        The smallest value that a metric of its vertices gives: 0 for a sliver, 0.49 for a regular
+        tetrahedron, 0.66 for a triangle.
+        """
+        return self._circumspheres[1]
+
+    @cached_property
+    def stars_without_interfaces(self) -> Count:
+        """Stars certified when the walk crosses interfaces too (not the boundary), of all."""
+        core, threads = self._of.mesh.core(), self._of.threads
+        with meshing_errors():
+            bits = core.delaunay_across_interfaces(threads=threads)
+        star_ok = self._of.star_ok() if bits is None else replace(self._of, bits=bits).star_ok()
+        return int(star_ok.sum()), len(star_ok)
+
+    @cached_property
+    def restricted_v1(self) -> Count:
+        """Simplices in the paper's restricted stars of all their vertices, and of how many.
+
+        Of those whose circumcentre lies in the domain in the metrics of all vertices ([2],
+        section 3).
+        """
+        return self._circumspheres[2]
+
+    @cached_property
+    def restricted_v2(self) -> Count:
+        """Simplices in the paper's restricted stars of all their vertices, and of how many.
+
+        Of those whose circumcentre lies in the domain in the metric of one vertex at least ([1],
+        section 3).
+        """
+        return self._circumspheres[3]
+
+    @property
+    def _of(self) -> _Judged:
+        judged: _Judged = self.__dict__["_judged"]
+        return judged
+
+    @cached_property
+    def _circumspheres(self) -> tuple[Floats, Floats, Count, Count]:
+        core, bits, threads = self._of.mesh.core(), self._of.bits, self._of.threads
+        with meshing_errors():
+            return core.circumspheres(delaunay=bits, threads=threads)
 
     @property
     def is_certified(self) -> bool:
@@ -176,22 +247,11 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
     threads = operator.index(threads)
     if threads < 1:
         raise ValueError(f"threads must be at least 1, got {threads}")
-    compiled = _core.certify2 if mesh.dim == 2 else _core.certify3
-    with meshing_errors():
-        raw = compiled(mesh.points, mesh.cells, metric, mesh.facets, threads)
-    bits = raw["delaunay"][:, None] >> np.arange(mesh.dim + 1, dtype=np.uint8)
-    flags = {name: raw[name].astype(bool) for name in ("simplex_ok", "star_ok", "exempt")}
-    return Certificate(
-        **flags,
-        distortion=raw["distortion"],
-        radius_edge=raw["radius_edge"],
-        sliverity=raw["sliverity"],
-        verdict=_verdict(**flags),
-        delaunay=(bits & 1).astype(bool),
-        stars_without_interfaces=(int(raw["stars_without_interfaces"]), mesh.n_points),
-        restricted_v1=raw["restricted_v1"],
-        restricted_v2=raw["restricted_v2"],
-    )
+    judged = MetricMesh.of(mesh, metric)
+    bits = kept_proof(mesh, judged)
+    if bits is None:
+        bits = judged.delaunay(threads)
+    return _certificate(_Judged(judged, bits, threads))
 
 
 def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, ...]:
@@ -222,7 +282,27 @@ def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, 
     if not 0 <= vertex < mesh.n_points:
         raise ValueError(f"vertex must be in [0, {mesh.n_points - 1}], got {vertex}")
     cells = np.flatnonzero((mesh.cells == vertex).any(axis=1))
-    return tuple(_explained(mesh, metric[vertex], int(cell)) for cell in cells)
+    judged = MetricMesh.of(mesh, metric)
+    return tuple(_explained(judged, metric[vertex], int(cell)) for cell in cells)
+
+
+def _certificate(judged: _Judged) -> Certificate:
+    star_ok = judged.star_ok()
+    flags = {
+        "simplex_ok": judged.simplex_ok(),
+        "star_ok": star_ok,
+        "exempt": _exempt(judged.mesh, star_ok),
+    }
+    return Certificate(
+        **flags, verdict=_verdict(**flags), delaunay=judged.delaunay(), judged=judged
+    )
+
+
+def _exempt(mesh: MetricMesh, star_ok: Bools) -> Bools:
+    if star_ok.all():
+        return np.zeros(len(star_ok), dtype=bool)
+    with meshing_errors():
+        return mesh.core().exempt(star_ok=star_ok.view(np.uint8)).astype(bool)
 
 
 def _verdict(simplex_ok: Bools, star_ok: Bools, exempt: Bools) -> str:
@@ -243,10 +323,9 @@ def _fraction(ok: Bools) -> str:
     return f"{math.floor(1e4 * ok.mean()) / 1e4:g} ({int(ok.sum())} of {len(ok)})"
 
 
-def _explained(mesh: Mesh, metric: Floats, cell: int) -> SimplexOfStar:
-    compiled = _core.delaunay_violator2 if mesh.dim == 2 else _core.delaunay_violator3
+def _explained(mesh: MetricMesh, metric: Floats, cell: int) -> SimplexOfStar:
     with meshing_errors():
-        found = compiled(mesh.points, mesh.cells, mesh.facets, cell, metric)
+        found = mesh.core().violator(cell=cell, metric=metric)
     corners = mesh.points[mesh.cells[cell]]
     centre = circumcentre(corners, metric)
     return SimplexOfStar(

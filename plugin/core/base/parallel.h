@@ -82,6 +82,22 @@ private:
   std::atomic<bool> is_stopped_;
 };
 
+/// Calls body(begin, end) on ranges that cover 0..n, each a moment's work, and between
+/// them look(fraction done) on the calling thread: what that throws ends the loop, and
+/// so does false.
+template <class Look, class Body>
+void watched_ranges(std::size_t n, int threads, const Look &look, Body body) {
+  constexpr std::size_t grain = 1 << 12;
+  const std::size_t n_parts = (n + grain - 1) / grain;
+  StopSignal stop;
+  parallel_items(n_parts, threads, [&] {
+    return [&](std::size_t part) {
+      if (stop.goes_on([&] { return look(double(part) / double(n_parts)); }))
+        body(part * grain, std::min(n, (part + 1) * grain));
+    };
+  });
+}
+
 /// The items that visit(k, add) adds for 0 <= k < n, in the order of k.
 template <class Item, class Visit>
 [[nodiscard]] std::vector<Item> parallel_search(std::size_t n, int threads,

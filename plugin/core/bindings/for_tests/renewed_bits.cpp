@@ -1,6 +1,6 @@
 #include "bindings/for_tests/bind.h"
 #include "bindings/support/geometry.h"
-#include "certificate/certify.h"
+#include "certificate/walled_mesh.h"
 
 namespace anistar::bindings {
 namespace {
