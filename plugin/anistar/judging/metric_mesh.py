@@ -78,18 +78,18 @@ class _Proof:
 _PROOFS: WeakKeyDictionary[Mesh, _Proof] = WeakKeyDictionary()
 
 
-def keep_proof(mesh: Mesh, metric: Floats, delaunay: Bytes) -> None:
+def keep_proof(mesh: Mesh, judged: MetricMesh, delaunay: Bytes) -> None:
     """Keep what is known of a mesh in a metric for as long as the mesh lives.
 
     Parameters
     ----------
     mesh : Mesh
-    metric : (n, d, d) float64
-        At its points; symmetric, in 1 / length**2.
+    judged : MetricMesh
+        Its copy with the metric.
     delaunay : (m,) uint8
         As `MetricMesh.delaunay` returns it.
     """
-    _PROOFS[mesh] = _Proof(MetricMesh.of(mesh, metric).digest(), delaunay.copy())
+    _PROOFS[mesh] = _Proof(judged.digest(), delaunay.copy())
 
 
 def kept_proof(mesh: Mesh, judged: MetricMesh) -> Bytes | None:

@@ -13,6 +13,7 @@ from ..base.arguments import require
 from ..base.arrays import Floats, Ints
 from ..base.core_errors import meshing_errors
 from ..base.telling import tell
+from ..judging.metric_mesh import Bytes, MetricMesh, keep_proof
 from ..meshes.mesh import Mesh
 from ..meshes.mesh_arrays import mesh_arrays
 from ..metric import check_metric
@@ -104,10 +105,13 @@ def remesh(
     ramp = approached(mesh, metric, scale, options.max_refinement)
     check_demand(mesh, ramp.metric, scale, options)
     made = _made(mesh, ramp.metric, geometry, project, options, scale)
+    proof = _proof_at_scale(made, scale)
     reached = made.metric
     reached *= scale * scale
     new = _new_mesh(made.mesh, mesh, geometry, scale)
     metric = carried(mesh, check_metric(M), new) if ramp.is_limited.any() else reached
+    if proof is not None and metric is reached:
+        keep_proof(new, MetricMesh.of(new, reached), proof)
     is_curved = mesh.dim == 2 or made.counts["curved"] > 0
     shape = smooth_shape(geometry, options) if is_curved else None
     report = report_of(
@@ -192,6 +196,24 @@ def _made(
             project=None if project is None else pointwise(project, geometry, scale),
             callback=options.callback,
         )
+
+
+def _proof_at_scale(made: _core.RemeshResult, scale: float) -> Bytes | None:
+    """Return what the core has proved of the mesh it made, if it holds in other units.
+
+    It does where the powers of two that take coordinates and metric there round nothing.
+    """
+    is_exact = _keeps_digits(made.mesh.points, 1.0 / scale) and _keeps_digits(
+        made.metric, scale * scale
+    )
+    return made.delaunay if is_exact else None
+
+
+def _keeps_digits(values: Floats, power_of_two: float) -> bool:
+    with np.errstate(over="ignore", under="ignore"):
+        products = np.abs(values[values != 0.0]) * power_of_two
+    doubles = np.finfo(np.float64)
+    return bool(((products >= doubles.tiny) & (products <= doubles.max)).all())
 
 
 def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:

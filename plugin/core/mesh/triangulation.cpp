@@ -70,7 +70,7 @@ std::vector<Index> cells_by_first_vertex(const Triangulation<d> &mesh) {
 } // namespace
 
 template <std::size_t d>
-std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads, double shift) {
+Renumbering sort_along_curve(Triangulation<d> &mesh, int threads, double shift) {
   std::vector<Index> used;
   std::vector<Vector<d>> points;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
@@ -81,7 +81,7 @@ std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads, double 
   std::vector<Index> order = hilbert_order<d>(points, threads, shift);
   for (Index &k : order)
     k = used[k];
-  const std::vector<Index> rank = inverse(order, mesh.vertices.size());
+  std::vector<Index> rank = inverse(order, mesh.vertices.size());
   permute(mesh.vertices, order, threads);
   permute(mesh.feature, order, threads);
   permute(mesh.background_cell, order, threads);
@@ -93,7 +93,7 @@ std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads, double 
           v = rank[v];
   });
 
-  const std::vector<Index> cell_order = cells_by_first_vertex(mesh);
+  std::vector<Index> cell_order = cells_by_first_vertex(mesh);
   const std::vector<Index> cell_rank = inverse(cell_order, mesh.cells.size());
   permute(mesh.cells, cell_order, threads);
   permute(mesh.neighbours, cell_order, threads);
@@ -109,10 +109,10 @@ std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads, double 
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (Index v : mesh.cells[c])
       mesh.vertex_cell[v] = static_cast<Index>(c);
-  return rank;
+  return {std::move(rank), std::move(cell_order)};
 }
 
-template std::vector<Index> sort_along_curve<2>(Triangulation<2> &, int, double);
-template std::vector<Index> sort_along_curve<3>(Triangulation<3> &, int, double);
+template Renumbering sort_along_curve<2>(Triangulation<2> &, int, double);
+template Renumbering sort_along_curve<3>(Triangulation<3> &, int, double);
 
 } // namespace anistar

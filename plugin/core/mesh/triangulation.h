@@ -137,11 +137,16 @@ template <std::size_t d> struct Triangulation {
 /// counter-clockwise order, from the boundary on if v is a boundary vertex.
 void star_of(const Triangulation<2> &mesh, Index v, std::vector<HalfFacet> &star);
 
+/// Where vertices and cells have gone.
+struct Renumbering {
+  PerVertex<Index> rank;   ///< of every old vertex, `none` if it was dropped
+  PerCell<Index> old_cell; ///< of every new cell
+};
+
 /// Renumbers vertices along a Hilbert curve and cells by their first vertex; drops what
-/// is no longer used. @returns the new index of every old vertex, `none` if dropped.
+/// is no longer used. The vertices of a cell stay in their order.
 /// @param shift see hilbert_order
 template <std::size_t d>
-std::vector<Index> sort_along_curve(Triangulation<d> &mesh, int threads = 1,
-                                    double shift = 0);
+Renumbering sort_along_curve(Triangulation<d> &mesh, int threads = 1, double shift = 0);
 
 } // namespace anistar

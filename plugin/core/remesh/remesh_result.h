@@ -38,6 +38,7 @@ template <std::size_t d> struct RemeshResult : RemeshRecord {
   std::vector<Index> cell_tags;
   std::vector<Facet<d>> facets; ///< in 3D boundary facets look outward
   std::vector<Index> facet_tags;
+  PerCell<std::uint8_t> delaunay; ///< see DelaunayBits; empty: not certified
 };
 
 } // namespace anistar

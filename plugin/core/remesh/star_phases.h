@@ -18,6 +18,7 @@ namespace anistar {
 /// not made, none where it is; agree(settings); is_certified(settings, agreement) and
 /// is_mended(agreement); certify(): the answers for all cells, none when it was cut
 /// short; mend(known); refine(settings, known): consistency; mesh()
+/// out.delaunay is left in the numbering of stars.mesh().
 template <class Stars>
 void certify_stars(Stars &stars, const Run &run, const RemeshSettings &settings,
                    Stopwatch &watch, RemeshResult<Stars::d> &out) {
@@ -45,6 +46,7 @@ void certify_stars(Stars &stars, const Run &run, const RemeshSettings &settings,
     out.consistency = stars.refine(settings, *known);
   }
   out.stars.certified = certified_fractions(stars.mesh(), known->bits);
+  out.delaunay = std::move(known->bits);
 }
 
 } // namespace anistar

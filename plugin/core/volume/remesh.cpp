@@ -85,6 +85,15 @@ private:
   const Run &run_;
 };
 
+/// Drops the cells that insertions have left behind.
+void compact(Volume &volume, int threads, PerCell<std::uint8_t> &delaunay) {
+  const PerCell<Index> old_cell = renumber(volume, threads);
+  PerCell<std::uint8_t> moved(old_cell.size());
+  for (std::size_t c = 0; c < moved.size(); ++c)
+    moved[c] = delaunay[old_cell[c]];
+  delaunay = std::move(moved);
+}
+
 void extract_facets(const Volume &volume, VolumeResult &out) {
   const Triangulation<3> &mesh = volume.mesh;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -148,8 +157,8 @@ VolumeResult remesh_volume(const VolumeInput &input,
     Volume &volume = *shaping.volume;
     VolumeStars stars(volume, run);
     certify_stars(stars, run, settings, watch, out);
-    if (out.stars.certified)
-      renumber(volume, run.threads);
+    if (out.stars.certified && settings.consistency != ConsistencyMode::off)
+      compact(volume, run.threads, out.delaunay);
     watch.phase("report");
     out.kept_quality = shaping.kept;
     take_mesh(volume, out);

@@ -30,6 +30,14 @@ template <std::size_t d> auto metric_of(const std::vector<Vertex<d>> &vertices) 
   return owned(std::move(metric), {vertices.size(), d, d});
 }
 
+std::optional<nb::ndarray<nb::numpy, std::uint8_t>>
+bits_of(std::vector<std::uint8_t> &&delaunay) {
+  if (delaunay.empty())
+    return {};
+  const std::size_t n = delaunay.size();
+  return owned(std::move(delaunay), {n});
+}
+
 Array1<Index> tags_of(std::vector<Index> &&tags) {
   const std::size_t n = tags.size();
   return held<Array1<Index>>(owned(std::move(tags), {n}));
@@ -188,11 +196,12 @@ void bind_stop_reasons(nb::module_ &module) {
 
 ResultArrays::ResultArrays(PlaneResult &&result)
     : RemeshRecord(result), metric(metric_of<2>(result.vertices)),
-      counts(counts_of(result)), mesh(arrays_of<2>(std::move(result), {}, {})) {}
+      counts(counts_of(result)), delaunay(bits_of(std::move(result.delaunay))),
+      mesh(arrays_of<2>(std::move(result), {}, {})) {}
 
 ResultArrays::ResultArrays(VolumeResult &&result)
     : RemeshRecord(result), metric(metric_of<3>(result.vertices)),
-      counts(counts_of(result)),
+      counts(counts_of(result)), delaunay(bits_of(std::move(result.delaunay))),
       mesh(arrays_of<3>(std::move(result), std::move(result.edges),
                         std::move(result.edge_tags))) {}
 
@@ -207,6 +216,9 @@ void bind_remesh_result(nb::module_ &module) {
       .def_ro("mesh", &ResultArrays::mesh)
       .def_ro("metric", &ResultArrays::metric, nb::rv_policy::automatic,
               nb::for_getter(nb::sig("def metric(self) -> NDArray[numpy.float64]")))
+      .def_ro(
+          "delaunay", &ResultArrays::delaunay, nb::rv_policy::automatic,
+          nb::for_getter(nb::sig("def delaunay(self) -> NDArray[numpy.uint8] | None")))
       .def_prop_ro("statistics",
                    [](const ResultArrays &self) { return as_dict(self.statistics); })
       .def_ro("kept_quality", &ResultArrays::kept_quality)

@@ -11,7 +11,9 @@ namespace anistar::bindings {
 struct ResultArrays : RemeshRecord {
   nb::ndarray<nb::numpy, double> metric;     ///< (n, d, d), at the points of the mesh
   std::map<std::string, std::size_t> counts; ///< operations by name, and corners
-  MeshArrays mesh;                           ///< without corners
+  /// Per cell, see DelaunayBits; none: not certified.
+  std::optional<nb::ndarray<nb::numpy, std::uint8_t>> delaunay;
+  MeshArrays mesh; ///< without corners
 
   explicit ResultArrays(PlaneResult &&result);
   explicit ResultArrays(VolumeResult &&result);

@@ -114,9 +114,9 @@ void gather_fans(Volume &volume, std::span<const Index> touching) {
           cells->push_back(static_cast<Index>(c));
 }
 
-void renumber(Volume &volume, int threads) {
+PerCell<Index> renumber(Volume &volume, int threads) {
   Triangulation<3> &mesh = volume.mesh;
-  const std::vector<Index> rank = sort_along_curve<3>(mesh, threads);
+  auto [rank, old_cell] = sort_along_curve<3>(mesh, threads);
   const std::size_t n = mesh.vertices.size();
   take_along(volume.support, rank, n);
   take_along(volume.vertex_clock, rank, n);
@@ -144,6 +144,7 @@ void renumber(Volume &volume, int threads) {
     }
   });
   volume.state.slabs = cut_into_slabs(mesh);
+  return std::move(old_cell);
 }
 
 } // namespace anistar

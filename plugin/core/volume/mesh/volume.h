@@ -148,7 +148,8 @@ void star_of(Volume &volume, Index v, std::vector<Index> &cells);
 /// Finds all cells at the vertices where bodies touch.
 void gather_fans(Volume &volume, std::span<const Index> touching);
 
-/// Renumbers along a Hilbert curve, and cuts into slabs.
-void renumber(Volume &volume, int threads = 1);
+/// Renumbers along a Hilbert curve, and cuts into slabs. @returns the old index of
+/// every cell
+PerCell<Index> renumber(Volume &volume, int threads = 1);
 
 } // namespace anistar
