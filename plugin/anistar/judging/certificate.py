@@ -17,7 +17,7 @@ from ..base.report import as_builtin, attributes
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
 from ..metric.kernels.algebra import solved
-from .metric_mesh import Bytes, MetricMesh, kept_proof
+from .metric_mesh import Bytes, MetricMesh, keep_proof, kept_proof
 
 Count = tuple[int, int]
 """How many, of how many."""
@@ -251,7 +251,21 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
     bits = kept_proof(mesh, judged)
     if bits is None:
         bits = judged.delaunay(threads)
-    return _certificate(_Judged(judged, bits, threads))
+    return certificate_of(judged, bits, threads=threads)
+
+
+def certify_and_keep(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
+    """Return what `certify` does, which costs next to nothing from then on (see `keep_proof`)."""
+    certificate = certify(mesh, M, threads=threads)
+    keep_proof(mesh, certificate._of.mesh, certificate._of.bits)
+    return certificate
+
+
+def known_certificate(mesh: Mesh, M: ArrayLike) -> Certificate | None:
+    """Return what `certify` does if it is known already, else None."""
+    judged = MetricMesh.of(mesh, check_metric(M, n_points=mesh.n_points, dim=mesh.dim))
+    bits = kept_proof(mesh, judged)
+    return None if bits is None else certificate_of(judged, bits)
 
 
 def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, ...]:
@@ -286,12 +300,14 @@ def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, 
     return tuple(_explained(judged, metric[vertex], int(cell)) for cell in cells)
 
 
-def _certificate(judged: _Judged) -> Certificate:
+def certificate_of(mesh: MetricMesh, delaunay: Bytes, *, threads: int = 1) -> Certificate:
+    """Return the certificate of a mesh of which `MetricMesh.delaunay` is known."""
+    judged = _Judged(mesh, delaunay, threads)
     star_ok = judged.star_ok()
     flags = {
         "simplex_ok": judged.simplex_ok(),
         "star_ok": star_ok,
-        "exempt": _exempt(judged.mesh, star_ok),
+        "exempt": _exempt(mesh, star_ok),
     }
     return Certificate(
         **flags, verdict=_verdict(**flags), delaunay=judged.delaunay(), judged=judged
@@ -319,8 +335,12 @@ def _verdict(simplex_ok: Bools, star_ok: Bools, exempt: Bools) -> str:
 
 
 def _fraction(ok: Bools) -> str:
-    # rounded down: 1 means all
-    return f"{math.floor(1e4 * ok.mean()) / 1e4:g} ({int(ok.sum())} of {len(ok)})"
+    return f"{rounded_down(float(ok.mean())):g} ({int(ok.sum())} of {len(ok)})"
+
+
+def rounded_down(share: float) -> float:
+    """Return a share to four digits: 1 means all."""
+    return math.floor(1e4 * share) / 1e4
 
 
 def _explained(mesh: MetricMesh, metric: Floats, cell: int) -> SimplexOfStar:

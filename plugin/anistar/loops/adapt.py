@@ -14,6 +14,7 @@ from ..base.arrays import Floats
 from ..base.errors import MeshingError
 from ..base.report import attributes
 from ..base.telling import telling_once
+from ..judging.certificate import certify_and_keep
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric import Ledger, MetricOptions, from_fields
@@ -22,6 +23,7 @@ from ..remeshing.options import RemeshOptions
 from ..remeshing.project import Project
 from ..remeshing.remesh import Remeshed, remesh
 from ..remeshing.report import RemeshReport
+from ..remeshing.verdict import verdict_line
 from ..transfer import TransferOptions, TransferReport, transfer
 from .aliases import canonical
 
@@ -136,6 +138,11 @@ class AdaptReport:
         or exceeded `max_elements`.
     seconds : float
         Wall time of the whole adaptation.
+    simplex_ok, star_ok : float or None
+        Certified fractions of the cells and of the stars of the new mesh, see `certify`. Where
+        the mesher finished without a certificate, it is made here; not where agreement is off.
+    verdict : str
+        The certificate in one line, or why there is none.
     """
 
     metric_fields: tuple[str, ...]
@@ -144,6 +151,9 @@ class AdaptReport:
     transfer: TransferReport
     corrections: int
     seconds: float
+    simplex_ok: float | None
+    star_ok: float | None
+    verdict: str
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
@@ -236,6 +246,7 @@ def adapt_to(
     chosen = {name: checked[name] for name in names}
     ledger, done, corrections = _to_count(mesh, chosen, options, wanted, geometry, project)
     carried = transfer(mesh, fields, done.mesh, options.transfer)
+    stars = _judged(done, options.remesh)
     report = AdaptReport(
         metric_fields=names,
         metric=ledger,
@@ -243,8 +254,33 @@ def adapt_to(
         transfer=carried.report,
         corrections=corrections,
         seconds=time.perf_counter() - started,
+        simplex_ok=stars.simplex_ok,
+        star_ok=stars.star_ok,
+        verdict=stars.verdict,
     )
     return Adapted(done.mesh, carried.fields, done.metric, report)
+
+
+class _Stars(NamedTuple):
+    """What reports say of the stars of a mesh."""
+
+    simplex_ok: float | None
+    star_ok: float | None
+    verdict: str
+
+
+def _judged(done: Remeshed, options: RemeshOptions) -> _Stars:
+    """Certify the mesh where `remesh` has not, unless it is unfinished or that is not wanted."""
+    report = done.report
+    is_unjudged = report.star_ok is None and report.stop_reason == "finished"
+    if not is_unjudged or options.agreement is False:
+        return _Stars(report.simplex_ok, report.star_ok, report.verdict)
+    certificate = certify_and_keep(done.mesh, done.metric, threads=options.threads)
+    return _Stars(
+        float(certificate.simplex_ok.mean()),
+        float(certificate.star_ok.mean()),
+        verdict_line(certificate, report.agreement),
+    )
 
 
 def _to_count(

@@ -14,6 +14,7 @@ from .agreement import agreement_text
 from .bad_cells import BadCell, quality_bound, worst_cells
 from .fidelity import SurfaceDeviation, TagMeasure, shape_warnings
 from .long_edges import LONG_EDGE, LongEdge, longest_edges
+from .verdict import verdict_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +59,9 @@ class RemeshReport:
         Certified fractions of the cells and of the stars (see `certify`); None when the
         agreement phase was off or a budget had stopped the run, and in 3D, where the
         certificate takes longer than a pass: ask `certify`.
+    verdict : str
+        That of the certificate in one line, with what agreement came to where stars fail; or why
+        there is no certificate.
     distortion : dict of str to float
         Quantiles of ln gamma, the distortion of the metric along the edges.
     tags : tuple of TagMeasure
@@ -94,6 +98,7 @@ class RemeshReport:
     consistency: dict[str, Any]
     simplex_ok: float | None
     star_ok: float | None
+    verdict: str
     distortion: dict[str, float]
     tags: tuple[TagMeasure, ...]
     deviations: tuple[SurfaceDeviation, ...]
@@ -143,6 +148,7 @@ def report_of(
         n_bad, bad = worst_cells(new, metric, bound)
     is_long = statistics["edge_max"] > LONG_EDGE
     stop_reason = _stop_reason(made, ramp)
+    agreement = agreement_text(made.agreement, new.dim)
     return RemeshReport(
         converged=stop_reason == "finished"
         and made.consistency_stop in (ConsistencyStop.none_yet, ConsistencyStop.consistent),
@@ -155,10 +161,11 @@ def report_of(
         n_bad_cells=n_bad,
         bad_cells=bad,
         long_edges=longest_edges(new, metric) if is_long else (),
-        agreement=agreement_text(made.agreement, new.dim),
+        agreement=agreement,
         consistency={**made.consistency, "stop_reason": _consistency_stop(made)},
         simplex_ok=made.certified.simplex_ok if made.certified else None,
         star_ok=made.certified.star_ok if made.certified else None,
+        verdict=verdict_of(made, new, metric, agreement),
         distortion=made.distortion,
         tags=tags,
         deviations=deviations,
