@@ -7,6 +7,8 @@ from meshes import cube, square
 from anistar.cli import main
 from anistar.formats import read, write, write_metric
 
+FIGURES = {"longest_edge", "quality", "distortion", "inconsistent", "simplex_ok", "star_ok"}
+
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
@@ -52,8 +54,9 @@ def test_figures_of_every_cell_go_to_a_file_for_a_viewer(folder):
     assert check("bad.mesh --metric bad.sol -o figures.vtu") == 1
     mesh, fields = read("figures.vtu")
     assert mesh.n_cells == 32
-    assert set(fields) == {"longest_edge", "quality", "distortion", "inconsistent"}
-    assert all(field.on == "cells" for field in fields.values())
+    assert set(fields) == FIGURES
+    assert {name for name in fields if fields[name].on == "points"} == {"star_ok"}
+    assert np.array_equal(fields["simplex_ok"].values, 1 - fields["inconsistent"].values)
     assert set(np.unique(fields["inconsistent"].values)) <= {0, 1}
     assert fields["inconsistent"].values.sum() > 0
     # one diagonal of the squares is sqrt(3) long, the other 1
@@ -91,7 +94,8 @@ def test_a_3d_mesh_is_certified_too(folder, capsys, off, code):
     report = json.loads(capsys.readouterr().out)["certificate"]
     assert report["is_certified"] == (code == 0)
     fields = read("cube.vtu")[1]
-    assert set(fields) == {"longest_edge", "quality", "distortion", "inconsistent"}
+    assert set(fields) == FIGURES
     assert fields["inconsistent"].values.sum() == 48 - report["simplices"][0]
+    assert fields["star_ok"].values.sum() == report["stars"][0]
     assert check("cube.mesh --metric cube.sol --picture cube.png") == 2
     assert "--picture is for 2D meshes" in capsys.readouterr().err

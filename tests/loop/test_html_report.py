@@ -75,7 +75,7 @@ def test_the_page_shows_every_iteration_with_pictures_histograms_and_tables(run,
     for words in (
         "complexities done",
         "certified stars",
-        "of the stars",
+        "The mesh. Certified: star_ok = 1 (",
         "bottom",
         "integral",
         "v[1]",

@@ -81,14 +81,17 @@ def as_text(value: Any) -> str:
     return str(value)
 
 
-def show_remeshed(title: str, rows: Sequence[Sequence[Any]], report: RemeshReport) -> None:
-    """Print the sizes of both meshes, and why the mesher stopped if it did before its end."""
+def show_remeshed(
+    title: str, rows: Sequence[Sequence[Any]], report: RemeshReport, verdict: str
+) -> None:
+    """Print the sizes of both meshes, why the mesher stopped early, and the verdict."""
     show_table(title, ["mesh", "points", "cells"], rows)
     if not report.converged:
         reason = report.stop_reason
         if reason == "finished":  # all but the insertion of points until the stars agree
             reason = report.consistency["stop_reason"]
         say(f"not converged: the mesher stopped at {reason}, the mesh is valid")
+    say(verdict)
 
 
 @contextmanager

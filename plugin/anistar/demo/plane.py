@@ -147,8 +147,9 @@ def _written(place: Path, loop: Loop, steps: Sequence[Step], rows: Sequence[Demo
     u = last.fields["u"]
     pictures.overview_picture(overview, last.mesh, u, _metric_of(middle), label="temperature")
     pictures.mesh_picture(first_mesh, first.mesh)
-    pictures.mesh_picture(last_mesh, last.mesh)
-    pictures.mesh_picture(close_up, last.mesh, box=CLOSE_UP)
+    verdict = getattr(last.report, "verdict", "")
+    pictures.mesh_picture(last_mesh, last.mesh, title=verdict)
+    pictures.mesh_picture(close_up, last.mesh, box=CLOSE_UP, title=verdict)
     pictures.solution_picture(solution, last.mesh, u, label="temperature")
     pictures.metric_picture(metric, *_metric_of(middle))
     curves = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from ..metric import check_metric
 from ..metric.kernels.algebra import congruent, eigenvalues, lower_factor
 from .certificate import Certificate
 from .quality import mean_ratios, metric_lengths
+
+#: Where the labels of a certificate live.
+CERTIFICATE_ARRAYS = {"simplex_ok": "cells", "star_ok": "points"}
 
 
 def cell_arrays(mesh: Mesh, M: Floats, certificate: Certificate | None = None) -> dict[str, Field]:
@@ -31,7 +35,8 @@ def cell_arrays(mesh: Mesh, M: Floats, certificate: Certificate | None = None) -
     dict of str to Field
         ``longest_edge``, the length in the metric; ``quality``, the mean ratio; ``distortion``,
         the largest between two vertices of the cell, at least 1; and with a certificate
-        ``inconsistent``, 0 where the cell is certified and 1 where it is not.
+        ``inconsistent``, 0 where the cell is certified and 1 where it is not, and what
+        `certificate_arrays` returns.
 
     Raises
     ------
@@ -51,7 +56,30 @@ def cell_arrays(mesh: Mesh, M: Floats, certificate: Certificate | None = None) -
     if certificate is not None:
         flags = (~certificate.simplex_ok).astype(np.int32)
         fields["inconsistent"] = Field(flags, "cells", "label")
+        fields |= certificate_arrays(certificate)
     return fields
+
+
+def certificate_arrays(certificate: Certificate | None) -> dict[str, Field]:
+    """Return ``simplex_ok`` of the cells and ``star_ok`` of the points as labels, 1 or 0.
+
+    Nothing where there is no certificate.
+    """
+    if certificate is None:
+        return {}
+    return {
+        "simplex_ok": Field(certificate.simplex_ok, "cells", "label"),
+        "star_ok": Field(certificate.star_ok, "points", "label"),
+    }
+
+
+def without_certificate(fields: Mapping[str, Field]) -> dict[str, Field]:
+    """Return the fields of a file but for what `certificate_arrays` says of its mesh."""
+    return {
+        name: field
+        for name, field in fields.items()
+        if CERTIFICATE_ARRAYS.get(name) != field.on or field.kind != "label"
+    }
 
 
 def _distortions(M: Floats, N: Floats) -> Floats:

@@ -34,7 +34,7 @@ _INCHES = 11.0
 _DPI = 150
 
 
-def mesh_picture(path: Target, mesh: Mesh, *, box: Box | None = None) -> None:
+def mesh_picture(path: Target, mesh: Mesh, *, box: Box | None = None, title: str = "") -> None:
     """Draw the edges of a mesh, its boundary and interfaces stronger.
 
     Parameters
@@ -45,8 +45,11 @@ def mesh_picture(path: Target, mesh: Mesh, *, box: Box | None = None) -> None:
         A 2D mesh.
     box : (x_min, x_max, y_min, y_max), optional
         Part to show; all of it by default.
+    title : str
+        Above the mesh: the verdict on its stars, say.
     """
     figure, axes = _canvas(mesh, box)
+    axes.set_title(title)
     _draw_edges(axes, mesh, width=0.35)
     _draw_boundary(axes, mesh)
     _save(figure, path)
@@ -59,7 +62,7 @@ def certificate_picture(
     *,
     box: Box | None = None,
 ) -> None:
-    """Draw the edges of a mesh, and in red the triangles that are not certified.
+    """Draw the edges of a mesh, in red the triangles that are not certified, and the verdict.
 
     Parameters
     ----------
@@ -83,6 +86,7 @@ def certificate_picture(
             f"the mesh has {mesh.n_cells}"
         )
     figure, axes = _canvas(mesh, box)
+    axes.set_title(certificate.verdict)
     failing = mesh.points[mesh.cells[~certificate.simplex_ok]]
     axes.add_collection(PolyCollection(list(failing), facecolors=ACCENT, edgecolors="none"))
     _draw_edges(axes, mesh, width=0.7)

@@ -15,6 +15,7 @@ from typing import Any
 from ..base.errors import FormatError
 from ..base.report import write_text
 from ..formats import read
+from ..judging.certificate import rounded_down
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..pictures import (
@@ -152,7 +153,7 @@ def _overview(steps: Sequence[Mapping[str, Any]]) -> str:
             _percent(figures.get("edge_unit")),
             figures.get("edge_max"),
             figures.get("q_min"),
-            _percent(mesher.get("star_ok")),
+            _percent(_stars(made)),
         ]
         error = max(step["error"].values(), default=None)
         rows.append([*sizes, error, *quality, step["seconds"], made.get("seconds")])
@@ -163,7 +164,7 @@ def _iteration(
     step: Mapping[str, Any], mesh: Mesh, fields: Mapping[str, Field], *, is_last: bool
 ) -> str:
     made = step["report"]
-    parts = [_pictures(mesh, fields)]
+    parts = [_pictures(mesh, fields, _verdict(made))]
     if made is not None:
         parts += [
             _histograms(made["remesh"]["statistics"]),
@@ -176,10 +177,10 @@ def _iteration(
     return f"{shown}<summary>{title}</summary>{''.join(parts)}</details>"
 
 
-def _pictures(mesh: Mesh, fields: Mapping[str, Field]) -> str:
+def _pictures(mesh: Mesh, fields: Mapping[str, Field], verdict: str) -> str:
     if mesh.dim == 3:
-        return _volume_pictures(mesh, fields)
-    shown = [_figure(lambda file: mesh_picture(file, mesh), "The mesh.")]
+        return _volume_pictures(mesh, fields, verdict)
+    shown = [_figure(lambda file: mesh_picture(file, mesh), f"The mesh.{verdict}")]
     for name, field in fields.items():
         if field.on == "points" and field.kind == "scalar":
             draw = partial(solution_picture, mesh=mesh, values=field.values, label=name)
@@ -187,7 +188,7 @@ def _pictures(mesh: Mesh, fields: Mapping[str, Field]) -> str:
     return f'<div class="pair">{"".join(shown)}</div>'
 
 
-def _volume_pictures(mesh: Mesh, fields: Mapping[str, Field]) -> str:
+def _volume_pictures(mesh: Mesh, fields: Mapping[str, Field], verdict: str) -> str:
     """Show the surface and what lies behind the middle in x."""
     x = mesh.points[:, 0]
     behind = x[mesh.cells].mean(axis=1) < (x.min() + x.max()) / 2
@@ -195,7 +196,7 @@ def _volume_pictures(mesh: Mesh, fields: Mapping[str, Field]) -> str:
     for name, field in fields.items():
         if field.on == "points" and field.kind == "scalar":
             draw = partial(volume_picture, mesh=mesh, values=field.values, label=name)
-            shown.append(_figure(draw, f"The mesh and the field {name}."))
+            shown.append(_figure(draw, f"The mesh and the field {name}.{verdict}"))
             shown.append(_figure(partial(draw, keep=behind), f"{name}, the half with small x."))
     return f'<div class="pair">{"".join(shown)}</div>'
 
@@ -231,13 +232,20 @@ def _metric(ledger: Mapping[str, Any]) -> str:
     )
 
 
+def _stars(made: Mapping[str, Any]) -> float | None:
+    """Return the share of certified stars; earlier versions reported that of the mesher only."""
+    share = made.get("star_ok", made.get("remesh", {}).get("star_ok"))
+    return None if share is None else rounded_down(share)
+
+
+def _verdict(made: Mapping[str, Any] | None) -> str:
+    """Return the verdict on the stars of a mesh as the end of a caption."""
+    said = "" if made is None else made.get("verdict", "")
+    return f" {said[:1].upper()}{said[1:]}." if said else ""
+
+
 def _mesher(mesher: Mapping[str, Any]) -> str:
     said = [f"stopped: {mesher['stop_reason']}", f"agreement: {mesher['agreement']}"]
-    if mesher["star_ok"] is not None:
-        said.append(
-            f"certified: {_percent(mesher['star_ok'])} of the stars, "
-            f"{_percent(mesher['simplex_ok'])} of the cells"
-        )
     kept = ("dim", "before", "after", "change", "change_from_smooth")
     tags = [[tag["name"] or str(tag["tag"]), *(tag[key] for key in kept)] for tag in mesher["tags"]]
     columns = ["tag", "dimension", "before", "after", "change", "from the smooth shape"]

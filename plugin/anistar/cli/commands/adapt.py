@@ -7,6 +7,7 @@ import argparse
 from ...formats import read, write, write_metric
 from ...loops.adapt import Adapted, adapt
 from .. import console
+from ..certificate_files import arrays_for, read_fields
 from ..files import metric_target, replaced_inputs, writable
 from ..options import (
     adapt_options,
@@ -43,12 +44,12 @@ def run(arguments: argparse.Namespace) -> int:
     output = writable(arguments.output)
     metric_output = metric_target(arguments.metric_output, output)
     options = adapt_options(arguments, metric_fields=arguments.field)
-    mesh, fields = read(arguments.input)
+    mesh, fields = read_fields(arguments.input)
     geometry = read(arguments.geometry)[0] if arguments.geometry else None
     done = adapt(mesh, fields, options, geometry=geometry)
     inputs = (arguments.input, arguments.geometry)
     replaced = replaced_inputs(inputs, output, metric_output)
-    write(output, done.mesh, done.fields)
+    write(output, done.mesh, done.fields | arrays_for(output, done.mesh, done.metric))
     if metric_output is not None:
         write_metric(metric_output, done.mesh, done.metric)
     console.say_replaced(replaced, "the adapted mesh", beside_json=arguments.json)
@@ -61,4 +62,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _show(source: str, points: int, cells: int, target: str, done: Adapted) -> None:
     rows = [[source, points, cells], [target, done.mesh.n_points, done.mesh.n_cells]]
-    console.show_remeshed(f"adapted in {done.report.seconds:.2f} s", rows, done.report.remesh)
+    report = done.report
+    title = f"adapted in {report.seconds:.2f} s"
+    console.show_remeshed(title, rows, report.remesh, report.verdict)

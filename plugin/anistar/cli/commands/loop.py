@@ -9,6 +9,7 @@ from typing import Any
 from ...base.errors import FormatError
 from ...base.report import as_builtin
 from ...formats import read
+from ...judging.certificate import rounded_down
 from ...loops.loop import Loop, LoopError, Step, adapt_loop
 from ...loops.loop_options import LoopOptions
 from ...meshes.mesh import Mesh
@@ -143,8 +144,24 @@ def _settings(arguments: argparse.Namespace, options: LoopOptions) -> dict[str, 
 
 def _show(loop: Loop) -> None:
     rows = [
-        [step.iteration, step.complexity, step.mesh.n_points, max(step.error.values())]
+        [
+            *(step.iteration, step.complexity, step.mesh.n_points, max(step.error.values())),
+            _stars(step),
+        ]
         for step in loop.steps
     ]
-    columns = ["iteration", "complexity", "points", "estimated L2 error"]
+    columns = ["iteration", "complexity", "points", "estimated L2 error", "star_ok"]
     console.show_table(loop.stop_reason, columns, rows)
+    verdict = _said(loop.steps[-1]).get("verdict")
+    if verdict is not None:
+        console.say(f"last mesh {verdict}")
+
+
+def _stars(step: Step) -> float | None:
+    share = _said(step).get("star_ok")
+    return None if share is None else rounded_down(share)
+
+
+def _said(step: Step) -> dict[str, Any]:
+    """Return what was reported about the mesh of a step, nothing about the first."""
+    return {} if step.report is None else step.report.as_dict()

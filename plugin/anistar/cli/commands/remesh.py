@@ -10,9 +10,9 @@ from ...formats import METRIC, read, read_metric, write, write_metric
 from ...formats.suffixes import SOLUTION_OF, solution_beside, suffix_of
 from ...meshes.fields import Field
 from ...remeshing.remesh import remesh
-from ...remeshing.report import RemeshReport
 from ...transfer import transfer
 from .. import console
+from ..certificate_files import arrays_for, read_fields
 from ..files import metric_target, replaced_inputs, writable
 from ..options import adapt_options, add_remesh_options
 
@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     source = Path(arguments.metric) if arguments.metric else beside
     if source is None:
         raise FormatError(f"no metric: give --metric, there is no .sol beside {arguments.input}")
-    mesh, fields = read(arguments.input)
+    mesh, fields = read_fields(arguments.input)
     M = read_metric(source, mesh)
     geometry = read(arguments.geometry)[0] if arguments.geometry else None
     done = remesh(mesh, M, options.remesh, geometry=geometry)
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
         fields = {METRIC: Field(done.metric)}
     inputs = (arguments.input, str(source), arguments.geometry)
     replaced = replaced_inputs(inputs, output, metric_output)
-    write(output, done.mesh, fields)
+    write(output, done.mesh, fields | arrays_for(output, done.mesh, done.metric))
     if metric_output is not None:
         write_metric(metric_output, done.mesh, done.metric)
     console.say_replaced(replaced, "the new mesh", beside_json=arguments.json)
@@ -69,15 +69,5 @@ def run(arguments: argparse.Namespace) -> int:
             [arguments.input, mesh.n_points, mesh.n_cells],
             [arguments.output, done.mesh.n_points, done.mesh.n_cells],
         ]
-        console.show_remeshed("remeshed", rows, done.report)
-        console.say(_certified(done.report))
+        console.show_remeshed("remeshed", rows, done.report, done.report.verdict)
     return 0
-
-
-def _certified(report: RemeshReport) -> str:
-    if report.star_ok is None or report.simplex_ok is None:
-        return f"agreement {report.agreement}: the stars were not checked"
-    return (
-        f"{100 * report.star_ok:.2f} % of the stars and {100 * report.simplex_ok:.2f} % of the "
-        f"simplices are certified; agreement {report.agreement}"
-    )

@@ -8,6 +8,7 @@ from typing import Any
 from ...formats import read, write
 from ...transfer import METHODS, FieldChange, TransferOptions, TransferReport, transfer
 from .. import console
+from ..certificate_files import read_fields
 from ..files import replaced_inputs, writable
 from ..options import add_outside_option
 
@@ -47,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
         threads=arguments.threads,
         l2_difference=arguments.l2_difference or None,
     )
-    source, fields = read(arguments.source)
+    source, fields = read_fields(arguments.source)
     target, _ = read(arguments.target)
     done = transfer(source, fields, target, options)
     replaced = replaced_inputs((arguments.source, arguments.target), output)
