@@ -4,9 +4,19 @@ import math
 
 import numpy as np
 
-from anistar import Mesh
+from anistar import Mesh, certify
 
 SIDES = {(1, 1): "bottom", (1, 2): "right", (1, 3): "top", (1, 4): "left"}
+
+
+def unproved(mesh, **changes):
+    """A mesh of the same values, of which nothing is known that `remesh` has proved."""
+    return Mesh._trusted(**{**mesh.arrays(), **changes})
+
+
+def certified_anew(done):
+    """The certificate of a new mesh, whatever `remesh` may know of it."""
+    return certify(unproved(done.mesh), done.metric)
 
 
 def grid(nx, ny):

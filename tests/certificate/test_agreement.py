@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from meshes import square
+from meshes import certified_anew, square
 from perturbations import perturbed
 
 import anistar
@@ -42,8 +42,8 @@ def test_agreement_certifies_every_star_of_a_graded_metric_without_more_vertices
     mesh, M = adapted()
     plain = remesh(mesh, M, RemeshOptions(agreement=False))
     agreed = remesh(mesh, M)
-    before = anistar.certify(plain.mesh, plain.metric)
-    after = anistar.certify(agreed.mesh, agreed.metric)
+    before = certified_anew(plain)
+    after = certified_anew(agreed)
     assert before.star_ok.mean() < 1.0
     assert after.star_ok.all()
     assert agreed.report.star_ok == 1.0
@@ -57,7 +57,7 @@ def test_agreement_certifies_every_star_of_a_graded_metric_without_more_vertices
 def test_the_report_states_the_fractions_that_certify_finds():
     mesh, M = adapted(factor=None)
     done = remesh(mesh, M, RemeshOptions(agreement=True))
-    certificate = anistar.certify(done.mesh, done.metric)
+    certificate = certified_anew(done)
     assert done.report.star_ok == pytest.approx(certificate.star_ok.mean(), abs=1e-12)
     assert done.report.simplex_ok == pytest.approx(certificate.simplex_ok.mean(), abs=1e-12)
 
@@ -90,7 +90,7 @@ def test_algorithm_2_ends_consistent_and_counts_vertices_by_rule():
     counts = done.report.consistency
     assert counts["stop_reason"] == "consistent"
     assert counts["inconsistency"] > 0
-    assert anistar.certify(done.mesh, done.metric).star_ok.all()
+    assert certified_anew(done).star_ok.all()
     assert done.mesh.n_points <= 1.06 * plain.mesh.n_points
     assert anistar.validate(done.mesh, mesh) == []
 
@@ -102,7 +102,7 @@ def test_the_pure_mode_reproduces_the_paper_from_the_boundary_alone(make):
     for number in range(6):  # one in some forty stalls with a star left
         changed = perturbed(M, number, size=1e-4)
         done = remesh(mesh, changed, RemeshOptions(until_consistent="pure"))
-        counts, certificate = done.report.consistency, anistar.certify(done.mesh, done.metric)
+        counts, certificate = done.report.consistency, certified_anew(done)
         assert done.report.counts["inserted"] == 0  # by the size phase of the ordinary way
         assert counts["size"] > 0.5 * done.mesh.n_points
         assert done.report.counts.get("relocations", 0) == 0
@@ -151,7 +151,7 @@ def test_a_hopeless_metric_ends_by_a_bound_with_a_valid_mesh():
 def test_stars_checked_again_after_a_mend_are_what_a_whole_check_finds():
     mesh, M = adapted(factor=3.0)
     done = remesh(mesh, M, RemeshOptions(agreement=True))
-    whole = anistar.certify(done.mesh, done.metric)
+    whole = certified_anew(done)
     assert done.report.counts["star_moves"] > 0
     assert done.report.star_ok == whole.star_ok.mean()
     assert done.report.simplex_ok == whole.simplex_ok.mean()

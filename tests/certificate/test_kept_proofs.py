@@ -9,20 +9,15 @@ import weakref
 import numpy as np
 import pytest
 from cases import FIGURES
-from meshes import cube, square, two_region_cube, two_regions
+from meshes import certified_anew, cube, square, two_region_cube, two_regions, unproved
 from remesh3d.domains import uniform
 
-from anistar import AdaptOptions, Mesh, MetricOptions, RemeshOptions, adapt, certify, remesh
+from anistar import AdaptOptions, MetricOptions, RemeshOptions, adapt, certify, remesh
 from anistar.judging.metric_mesh import MetricMesh, keep_proof, kept_proof
 
 
 def is_kept(mesh, metric):
     return kept_proof(mesh, MetricMesh.of(mesh, metric)) is not None
-
-
-def anew(mesh, **changes):
-    """A mesh of the same values, of which nothing is kept."""
-    return Mesh._trusted(**{**mesh.arrays(), **changes})
 
 
 def stretched(mesh, h, ratio=4.0):
@@ -56,7 +51,7 @@ def assert_same(one, other):
 def test_the_certificate_after_remesh_is_that_of_a_mesh_nothing_is_known_of(made):
     done = made()
     assert is_kept(done.mesh, done.metric)
-    assert_same(certify(done.mesh, done.metric), certify(anew(done.mesh), done.metric))
+    assert_same(certify(done.mesh, done.metric), certified_anew(done))
 
 
 def slanted(mesh, h=0.3, ratio=4.0):
@@ -77,7 +72,7 @@ def hopeless(dim, **options):
 def test_it_holds_on_both_sides_of_an_interface(regions):
     done = remesh(regions, slanted(regions), RemeshOptions(agreement=True))
     assert is_kept(done.mesh, done.metric)
-    kept, cold = certify(done.mesh, done.metric), certify(anew(done.mesh), done.metric)
+    kept, cold = certify(done.mesh, done.metric), certified_anew(done)
     assert_same(kept, cold)
     # a wall hides what lies behind it, as in remesh
     assert regions.dim == 2 or kept.stars_without_interfaces[0] < kept.star_ok.sum()
@@ -89,7 +84,7 @@ def test_it_holds_in_the_numbering_of_the_result_where_cells_fail(dim):
     assert inserted.mesh.n_points > agreed.mesh.n_points
     for done in (agreed, inserted):
         assert is_kept(done.mesh, done.metric)
-        kept, cold = certify(done.mesh, done.metric), certify(anew(done.mesh), done.metric)
+        kept, cold = certify(done.mesh, done.metric), certified_anew(done)
         assert_same(kept, cold)
         assert 0.02 < cold.delaunay.mean() < 0.98
         assert done.report.simplex_ok == pytest.approx(cold.simplex_ok.mean(), abs=1e-12)
@@ -115,7 +110,7 @@ def test_one_other_number_anywhere_and_nothing_is_known(made):
 
 
 def is_kept_for_the_arrays(done, **changes):
-    judged = MetricMesh.of(anew(done.mesh, **changes), done.metric)
+    judged = MetricMesh.of(unproved(done.mesh, **changes), done.metric)
     return kept_proof(done.mesh, judged) is not None
 
 
@@ -123,7 +118,7 @@ def is_kept_for_the_arrays(done, **changes):
 def test_a_mesh_that_is_changed_behind_its_back_is_judged_as_it_is(made):
     done = made()
     # a mesh of its own, as that of the other tests must stay
-    mesh = anew(done.mesh, points=done.mesh.points.copy())
+    mesh = unproved(done.mesh, points=done.mesh.points.copy())
     keep_proof(mesh, MetricMesh.of(mesh, done.metric), bits_of(done))
     assert certify(mesh, done.metric).star_ok.all()
     inside = np.setdiff1d(np.arange(mesh.n_points), mesh.facets)[0]
@@ -133,7 +128,7 @@ def test_a_mesh_that_is_changed_behind_its_back_is_judged_as_it_is(made):
     points[inside] = 0.05 * points[inside] + 0.95 * points[others].mean(axis=0)
     changed = certify(mesh, done.metric)
     assert not changed.star_ok.all()
-    assert_same(changed, certify(anew(mesh), done.metric))
+    assert_same(changed, certify(unproved(mesh), done.metric))
 
 
 def bits_of(done):
@@ -143,8 +138,8 @@ def bits_of(done):
 @BOTH
 def test_what_is_done_to_arrays_after_a_certificate_does_not_reach_it(made):
     done = made()
-    mesh, metric = anew(done.mesh, points=done.mesh.points.copy()), done.metric.copy()
-    certificate, expected = certify(mesh, metric), certify(anew(done.mesh), done.metric)
+    mesh, metric = unproved(done.mesh, points=done.mesh.points.copy()), done.metric.copy()
+    certificate, expected = certify(mesh, metric), certified_anew(done)
     mesh.points.base[...] = 0.0
     metric[...] = 0.0
     certificate.delaunay[...] = False
@@ -176,17 +171,17 @@ def test_it_keeps_no_mesh_alive():
 @pytest.mark.parametrize("exponent", [-90, -7, 7, 90])
 def test_it_holds_in_other_units(made, exponent):
     done, unit = made(), 2.0**exponent
-    mesh = anew(done.mesh, points=done.mesh.points * unit)
+    mesh = unproved(done.mesh, points=done.mesh.points * unit)
     again = remesh(mesh, done.metric / unit**2, RemeshOptions(agreement=True))
     assert is_kept(again.mesh, again.metric)
-    assert_same(certify(again.mesh, again.metric), certify(anew(again.mesh), again.metric))
+    assert_same(certify(again.mesh, again.metric), certified_anew(again))
 
 
 def test_it_is_not_kept_where_coordinates_may_lose_digits():
     mesh, unit = square(4), 2.0**-200
     points = mesh.points * unit
     points[0] = 3e-320  # a corner, which stays
-    mesh = anew(mesh, points=points)
+    mesh = unproved(mesh, points=points)
     done = remesh(mesh, np.tile(np.eye(2) * 9 / unit**2, (mesh.n_points, 1, 1)))
     assert done.report.star_ok is not None
     assert 3e-320 in done.mesh.points

@@ -51,6 +51,8 @@ def test_the_demo_beats_uniform_meshes_and_leaves_all_its_files(tmp_path):
     mesh, fields = read(tmp_path / "channel_002.vtu")
     assert mesh.n_points == demo.rows[1].adapted_points
     assert len(fields["u"].values) == mesh.n_points
+    stars = demo.loop.steps[-1].report.star_ok
+    assert fields["star_ok"].values.mean() == pytest.approx(stars, abs=1e-12)
 
 
 def test_the_advection_diffusion_example_solves_the_problem_of_the_demo(tmp_path):

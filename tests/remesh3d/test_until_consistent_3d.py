@@ -5,10 +5,10 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from meshes import cube, two_region_cube
+from meshes import certified_anew, cube, two_region_cube
 from remesh3d.domains import cube_with_ridges, cube_with_sheet, layer, touching_cubes, uniform
 
-from anistar import RemeshOptions, certify, remesh, validate
+from anistar import RemeshOptions, remesh, validate
 from anistar.remeshing.consistency_options import ConsistencyOptions
 
 INSERTING = RemeshOptions(agreement=False, until_consistent=True)
@@ -53,7 +53,7 @@ def test_where_agreement_gives_up_it_goes_on_with_more_patience():
     assert agreed.report.distortion["p90"] > 0.3
     assert done.report.consistency["stop_reason"] == "consistent"
     assert done.report.consistency["ln_gamma_p90"] == 0
-    assert certify(done.mesh, done.metric).star_ok.all()
+    assert certified_anew(done).star_ok.all()
     assert done.mesh.n_points < 1.01 * agreed.mesh.n_points
     assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
 
@@ -63,8 +63,8 @@ def test_a_smooth_metric_ends_consistent_with_few_more_vertices():
     M = growing(mesh)
     plain = remesh(mesh, M, RemeshOptions(agreement=False))
     done = remesh(mesh, M, INSERTING)
-    before = certify(plain.mesh, plain.metric)
-    after = certify(done.mesh, done.metric)
+    before = certified_anew(plain)
+    after = certified_anew(done)
     assert before.star_ok.mean() < 0.9
     assert after.star_ok.all()
     assert done.report.consistency["stop_reason"] == "consistent"
@@ -85,7 +85,7 @@ def test_after_the_agreement_phase_there_is_less_left_to_do():
     assert done.report.agreement == "done"
     assert done.report.consistency["stop_reason"] == "consistent"
     assert done.report.consistency["rounds"] < alone.report.consistency["rounds"]
-    assert certify(done.mesh, done.metric).star_ok.all()
+    assert certified_anew(done).star_ok.all()
     assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
 
 
@@ -98,12 +98,12 @@ def test_a_metric_that_turns_too_fast_stalls_with_the_best_mesh_and_its_figures(
     counts = done.report.consistency
     assert counts["stop_reason"] in {"stalled", "max_growth", "max_rounds"}
     assert not done.report.converged
-    certificate = certify(done.mesh, done.metric)
+    certificate = certified_anew(done)
     failing = done.mesh.cells[~certificate.simplex_ok]
     assert counts["ln_gamma_p90"] == pytest.approx(
         np.percentile(edge_distortions(failing, done.metric), 90), rel=0.05
     )
-    assert certificate.simplex_ok.mean() >= certify(plain.mesh, plain.metric).simplex_ok.mean()
+    assert certificate.simplex_ok.mean() >= certified_anew(plain).simplex_ok.mean()
     assert done.report.simplex_ok == pytest.approx(certificate.simplex_ok.mean(), abs=1e-12)
     assert done.report.star_ok == pytest.approx(certificate.star_ok.mean(), abs=1e-12)
     assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
@@ -139,7 +139,7 @@ def test_every_tag_is_kept(domain, metric):
     assert done.report.consistency["rounds"] > 0
     assert all(abs(tag.change) < 1e-9 for tag in done.report.tags)
     assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
-    found = certify(done.mesh, done.metric)
+    found = certified_anew(done)
     assert done.report.star_ok == pytest.approx(found.star_ok.mean(), abs=1e-12)
 
 
@@ -206,6 +206,6 @@ def test_a_stricter_rule_against_slivers_is_kept():
         done = remesh(mesh, growing(mesh, 0.3, 0.4), options)
         assert done.report.consistency["stop_reason"] == "consistent"
         assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
-        thinnest.append(certify(done.mesh, done.metric).sliverity.min())
+        thinnest.append(certified_anew(done).sliverity.min())
     assert thinnest[0] <= thinnest[1]
     assert thinnest[1] > 0.45

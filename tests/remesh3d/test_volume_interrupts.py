@@ -17,6 +17,8 @@ from remesh3d.test_curved import cylinder
 from remesh3d.test_until_consistent_3d import growing, hopeless
 
 from anistar import ConsistencyOptions, RemeshOptions, remesh, validate
+from anistar.judging.certificate import certificate_of
+from anistar.judging.metric_mesh import MetricMesh
 
 PHASES = ["background", "size", "shape", "agreement", "certificate", "consistency", "report"]
 
@@ -215,3 +217,33 @@ def test_growth_by_insertion_ends_at_its_own_bound(rounds):
     assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
     assert done.report.consistency["stop_reason"] == "max_growth"
     assert done.mesh.n_points < 1.5 * plain.mesh.n_points
+
+
+@functools.cache
+def long_grid():
+    return cube(26)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are POSIX")
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("figure", ["radius_edge", "restricted_v1", "distortion"])
+def test_signals_are_heard_while_a_figure_of_a_certificate_is_found(figure, threads):
+    mesh = long_grid()
+    judged = MetricMesh.of(mesh, np.tile(np.eye(3), (mesh.n_points, 1, 1)))
+    certificate = certificate_of(judged, np.full(mesh.n_cells, 15, np.uint8), threads=threads)
+    heard = []
+
+    def listen(*_):
+        heard.append(figure)
+        if len(heard) == 3:  # one alone may have been heard when all was done
+            raise InterruptedError(figure)
+
+    before = signal.signal(signal.SIGALRM, listen)
+    signal.setitimer(signal.ITIMER_REAL, 1e-3, 1e-3)
+    try:
+        with pytest.raises(InterruptedError, match=figure):
+            getattr(certificate, figure)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert np.size(getattr(certificate, figure)) > 1  # the next time it is found
