@@ -21,7 +21,7 @@ from ..meshes.topology import cell_volumes
 from ..metric import MetricOptions
 from ..remeshing.options import RemeshOptions
 from ..remeshing.remesh import remesh
-from ..runs.series import write_series
+from ..runs.series import item_of, write_series
 from ..transfer import transfer
 from .problem import EPSILON, channel, solve
 from .result import PICTURES, REPORT, Demo, DemoRow, columns_of, order_of
@@ -140,7 +140,7 @@ def _written(place: Path, loop: Loop, steps: Sequence[Step], rows: Sequence[Demo
     first, last = loop.steps[0], steps[-1]
     middle = steps[min(1, len(steps) - 1)]
     shown = [first, *steps]
-    files = write_series(place / "channel.pvd", ((step.mesh, step.fields) for step in shown))
+    files = write_series(place / "channel.pvd", map(item_of, shown))
     overview, first_mesh, last_mesh, close_up, solution, metric, convergence = (
         place / name for name in PICTURES
     )

@@ -16,7 +16,7 @@ from ..loops.loop import Step, adapt_loop
 from ..loops.loop_options import LoopOptions
 from ..meshes.mesh import Mesh
 from ..remeshing.remesh import remesh
-from ..runs.series import write_series
+from ..runs.series import item_of, write_series
 from .result import REPORT, Demo, DemoRow, order_of
 
 Progress = Callable[[str], object]
@@ -89,9 +89,7 @@ def run_volume_demo(
     for step in steps:
         rows.append(_row(step, coarse))
         progress(f"uniform at {step.complexity:g}")
-    files = write_series(
-        place / "front.pvd", ((step.mesh, step.fields) for step in (loop.steps[0], *steps))
-    )
+    files = write_series(place / "front.pvd", map(item_of, (loop.steps[0], *steps)))
     progress("files")
     demo = Demo(
         rows=tuple(rows),

@@ -89,6 +89,7 @@ class Certificate:
     judged: InitVar[_Judged]
 
     def __post_init__(self, judged: _Judged) -> None:
+        # not a field: those are what the certificate says
         object.__setattr__(self, "_judged", judged)
 
     @cached_property

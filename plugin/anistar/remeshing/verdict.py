@@ -9,14 +9,6 @@ from ..judging.certificate import Certificate, certificate_of
 from ..judging.metric_mesh import MetricMesh
 from ..meshes.mesh import Mesh
 
-#: What leaves a mesh without a certificate.
-_LEFT_OUT = (
-    AgreementOutcome.off,
-    AgreementOutcome.not_asked,
-    AgreementOutcome.stopped_before,
-    AgreementOutcome.varies_too_fast,
-)
-
 
 def verdict_of(made: _core.RemeshResult, new: Mesh, metric: Floats, agreement: str) -> str:
     """Return what `RemeshReport.verdict` says.
@@ -34,9 +26,9 @@ def verdict_of(made: _core.RemeshResult, new: Mesh, metric: Floats, agreement: s
     if made.delaunay is not None:
         certificate = certificate_of(MetricMesh.of(new, metric), made.delaunay)
         return verdict_line(certificate, agreement)
-    if made.agreement.outcome in _LEFT_OUT:
-        return f"no certificate: agreement {agreement}"
-    return f"no certificate: stopped by {made.stop_reason.name}"
+    if made.agreement.outcome in (AgreementOutcome.stopped, AgreementOutcome.done):
+        return f"no certificate: stopped by {made.stop_reason.name}"
+    return f"no certificate: agreement {agreement}"
 
 
 def verdict_line(certificate: Certificate, agreement: str) -> str:

@@ -13,14 +13,12 @@ from typing import Any
 from ..base.errors import FormatError
 from ..base.report import as_builtin, write_json
 from ..formats import read, write
-from ..judging.cell_arrays import certificate_arrays, without_certificate
-from ..judging.certificate import known_certificate
+from ..judging.cell_arrays import without_certificate
 from ..loops.loop import Loop, Step
-from ..meshes.fields import Field
 from .file_solver import FILE_KINDS, exchanged_files
 from .lock import locked
 from .own_files import OwnFiles
-from .series import member, write_index
+from .series import item_of, member, write_index
 
 SERIES = "series.pvd"
 REPORT = "report.json"
@@ -125,7 +123,7 @@ class RunFolder:
     def save(self, step: Step) -> None:
         """Add a finished step."""
         number = len(self.steps)
-        write(member(self.folder / SERIES, number), step.mesh, step.fields | _stars(step))
+        write(member(self.folder / SERIES, number), *item_of(step))
         self.steps.append(step)
         write_index(self.folder / SERIES, range(len(self.steps)))
         self._report(Loop(tuple(self.steps), RUNNING))
@@ -189,13 +187,6 @@ class RunFolder:
 
     def _report(self, loop: Loop) -> None:
         write_json(self.folder / REPORT, {"settings": self.settings, **loop.as_dict()})
-
-
-def _stars(step: Step) -> dict[str, Field]:
-    """Return what the certificate of its mesh says, where there is one, for viewers."""
-    if step.metric is None:
-        return {}
-    return certificate_arrays(known_certificate(step.mesh, step.metric))
 
 
 def _differences(before: Any, now: Any, name: str = "") -> Iterator[tuple[str, Any, Any]]:

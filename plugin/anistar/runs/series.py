@@ -12,6 +12,9 @@ from numpy.typing import ArrayLike
 
 from ..base.report import write_text
 from ..formats import write
+from ..judging.cell_arrays import certificate_arrays
+from ..judging.certificate import known_certificate
+from ..loops.loop import Step
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 
@@ -48,6 +51,14 @@ def write_series(path: str | os.PathLike[str], items: Iterable[Item]) -> list[Pa
         written.append(member(index, number))
         write(written[-1], mesh, fields)
     return [*written, write_index(index, range(len(written)))]
+
+
+def item_of(step: Step) -> Item:
+    """Return the mesh and the fields of a step, with what is known of its stars for viewers."""
+    fields = dict(step.fields)
+    if step.metric is not None:
+        fields |= certificate_arrays(known_certificate(step.mesh, step.metric))
+    return step.mesh, fields
 
 
 def member(path: str | os.PathLike[str], number: int) -> Path:
