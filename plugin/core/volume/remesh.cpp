@@ -7,6 +7,8 @@
 #include "volume/stars/consistency.h"
 #include "volume/stars/star_mending.h"
 
+#include <algorithm>
+
 namespace anistar {
 namespace {
 
@@ -85,7 +87,15 @@ private:
   const Run &run_;
 };
 
-/// Drops the cells that insertions have left behind.
+/// Whether insertions have left free cells or vertices behind.
+bool has_gaps(const Triangulation<3> &mesh) {
+  const auto is_free = [](const Cell<3> &cell) { return cell[0] == none; };
+  return std::any_of(mesh.cells.begin(), mesh.cells.end(), is_free) ||
+         std::find(mesh.vertex_cell.begin(), mesh.vertex_cell.end(), none) !=
+             mesh.vertex_cell.end();
+}
+
+/// Drops them.
 void compact(Volume &volume, int threads, PerCell<std::uint8_t> &delaunay) {
   const PerCell<Index> old_cell = renumber(volume, threads);
   PerCell<std::uint8_t> moved(old_cell.size());
@@ -157,7 +167,7 @@ VolumeResult remesh_volume(const VolumeInput &input,
     Volume &volume = *shaping.volume;
     VolumeStars stars(volume, run);
     certify_stars(stars, run, settings, watch, out);
-    if (out.stars.certified && settings.consistency != ConsistencyMode::off)
+    if (out.stars.certified && has_gaps(volume.mesh))
       compact(volume, run.threads, out.delaunay);
     watch.phase("report");
     out.kept_quality = shaping.kept;
