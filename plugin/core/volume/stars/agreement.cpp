@@ -130,8 +130,7 @@ public:
     scan();
     counts_.before = failing_.size();
     counts_.stop = reduce(Effort(effort, mesh_.n_cells(), failing_.size()));
-    for (int k = 0; k < n_last_polishes && polish(); ++k)
-      ;
+    polish_at_last();
     counts_.after = failing_.size();
     counts_.trials += relocation_.trials();
     return counts_;
@@ -214,7 +213,7 @@ private:
         return AgreementStop::interrupted;
       if (round + 1 == n_directed) {
         if (failing_.size() > few)
-          (void)polish();
+          (void)polish(start_);
         effort.begin(n_trials());
       }
       if (const auto stop = effort.stop(failing_.size(), n_trials());
@@ -320,19 +319,30 @@ private:
     counts_.moves += relocation_.wander(vertices[first], wandering_radius, random);
   }
 
-  /// Takes back what agreement cost in shape. @returns whether it found something
-  bool polish() {
+  void polish_at_last() {
+    std::uint32_t since = start_;
+    for (int k = 0; k < n_last_polishes; ++k) {
+      const std::uint32_t now = ++volume_.clock;
+      if (polish(since) == 0)
+        break;
+      since = now;
+    }
+  }
+
+  /// Takes back what agreement cost in shape, where stars have changed since then.
+  /// @returns the number of moves
+  std::size_t polish(std::uint32_t since) {
     const std::size_t done = move_by_slabs(
-        worse_vertices(),
+        worse_vertices(since),
         [&](Index v, int slab_round) { return slab_of_vertex(v, slab_round); },
         [](VolumeRelocation &relocation, Index v) { return relocation.polish(v); });
     counts_.polishes += done;
     update_list();
-    return done > 0;
+    return done;
   }
 
   /// The vertices of cells that are clearly worse than before, or new.
-  [[nodiscard]] std::vector<Index> worse_vertices() const {
+  [[nodiscard]] std::vector<Index> worse_vertices(std::uint32_t since) const {
     PerVertex<std::uint8_t> is_worse(mesh_.vertices.size(), 0);
     for (std::size_t k = 0; k < mesh_.cells.size(); ++k) {
       const auto c = static_cast<Index>(k);
@@ -340,7 +350,7 @@ private:
           (k >= quality_before_.size() ||
            volume_.quality[k] < quality_before_[k] - clear_loss))
         for (Index v : mesh_.at(c))
-          is_worse[v] = 1;
+          is_worse[v] = volume_.vertex_clock[v] >= since;
     }
     std::vector<Index> found;
     for (std::size_t v = 0; v < is_worse.size(); ++v)

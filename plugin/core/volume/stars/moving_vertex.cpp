@@ -95,14 +95,30 @@ double MovingVertex::length_penalty(const Vertex<3> &at) const {
   return penalty;
 }
 
-bool MovingVertex::place(const Vector<3> &x) {
+/// Puts the vertex there, with the metric that it has at home.
+bool MovingVertex::put(const Vector<3> &x) {
   trial_.place(x);
-  if (!is_in_range<3>(trial_.vertex().x) || !trial_.is_positive() ||
-      !trial_.keeps_surfaces())
+  return is_in_range<3>(trial_.vertex().x) && trial_.is_positive() &&
+         trial_.keeps_surfaces();
+}
+
+bool MovingVertex::place(const Vector<3> &x) {
+  if (!put(x))
     return false;
   trial_.take_metric();
   ++trials_;
   return true;
+}
+
+bool MovingVertex::place(const Vector<3> &x, const ShapeDemand &demand) {
+  if (!put(x))
+    return false;
+  ++trials_;
+  // to find the metric takes longer than the shapes, and it is about that of home
+  if (!demand.is_met_by(trial_.measure()))
+    return false;
+  trial_.take_metric();
+  return demand.is_met_by(trial_.measure());
 }
 
 std::optional<PlaceScore> MovingVertex::evaluate(double floor, double limit) {
@@ -126,11 +142,6 @@ std::optional<PlaceScore> MovingVertex::evaluate(double floor, double limit) {
   if (failing_facets > failing_facets_ && !view_.state.far.empty())
     return {};
   return score;
-}
-
-bool MovingVertex::has_shapes(double floor, double sum) {
-  const StarShapes &shapes = trial_.measure();
-  return shapes.minimum() >= floor && shapes.minimum() > 0 && shapes.sum() >= sum;
 }
 
 bool MovingVertex::disagrees_no_more(const PlaceScore &before) {

@@ -18,6 +18,15 @@ struct PlaceScore {
   [[nodiscard]] double total() const { return cost.total() + lengths; }
 };
 
+/// What the qualities of a star must be.
+struct ShapeDemand {
+  double floor, sum;
+
+  [[nodiscard]] bool is_met_by(const StarShapes &shapes) const {
+    return shapes.minimum() >= floor && shapes.minimum() > 0 && shapes.sum() >= sum;
+  }
+};
+
 class MovingVertex {
 public:
   explicit MovingVertex(AgreementView &view)
@@ -46,8 +55,8 @@ public:
   /// What the place is worth; nothing as soon as the total is not below the limit or a
   /// cell is below the floor. Facets do not fail in exchange for far violations.
   [[nodiscard]] std::optional<PlaceScore> evaluate(double floor, double limit);
-  /// Whether the qualities there reach a floor and a sum.
-  [[nodiscard]] bool has_shapes(double floor, double sum);
+  /// The same where the qualities there are to reach a floor and a sum.
+  [[nodiscard]] bool place(const Vector<3> &x, const ShapeDemand &demand);
   /// Whether no more facets fail there and edges are no worse; they may come nearer to
   /// it.
   [[nodiscard]] bool disagrees_no_more(const PlaceScore &before);
@@ -91,6 +100,7 @@ private:
   std::vector<double> best_margins_;
   std::size_t trials_ = 0;
 
+  [[nodiscard]] bool put(const Vector<3> &x);
   [[nodiscard]] bool gather_facets(Index c, std::size_t at);
   void gather_far_violations();
   void add(HalfFacet at, FacetStar star, double here);

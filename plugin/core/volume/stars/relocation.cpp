@@ -134,13 +134,12 @@ bool VolumeRelocation::polish(Index v) {
   if (step.squaredNorm() < smallest_polish * smallest_polish)
     return false;
   const double gain = polish_gain * static_cast<double>(vertex_.star().size());
-  const PolishDemand demand{floor_of(vertex_.least_quality()),
+  const ShapeDemand demand{floor_of(vertex_.least_quality()),
                             vertex_.sum_of_qualities() + gain};
   std::optional<PlaceScore> before; // few places are good enough to ask for it
   double wanted = 0;                // the part of the step that only facets forbid
   for (const double fraction : polish_fractions) {
-    if (!vertex_.place(start + in_space(L, fraction * step)) ||
-        !vertex_.has_shapes(demand.floor, demand.sum))
+    if (!vertex_.place(start + in_space(L, fraction * step), demand))
       continue;
     if (!before) {
       if (!vertex_.gather_around())
@@ -158,7 +157,7 @@ bool VolumeRelocation::polish(Index v) {
 
 /// The place as near to the wanted one as the facets let.
 bool VolumeRelocation::polish_beside(const Vector<3> &wanted,
-                                     const PolishDemand &demand,
+                                     const ShapeDemand &demand,
                                      const PlaceScore &before) {
   vertex_.return_home();
   bounds_.begin(volume_, vertex_);
@@ -166,8 +165,7 @@ bool VolumeRelocation::polish_beside(const Vector<3> &wanted,
   bounds_.keep_lengths(volume_, vertex_);
   const Vector<3> start = vertex_.home().x, y = bounds_.nearest(wanted, longest_polish);
   for (const double fraction : step_fractions)
-    if (vertex_.place(start + bounds_.in_space(fraction * y)) &&
-        vertex_.has_shapes(demand.floor, demand.sum) &&
+    if (vertex_.place(start + bounds_.in_space(fraction * y), demand) &&
         vertex_.disagrees_no_more(before)) {
       vertex_.move_here();
       return true;

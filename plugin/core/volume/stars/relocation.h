@@ -35,10 +35,7 @@ private:
   StepBounds bounds_;
 
   [[nodiscard]] bool step_once();
-  struct PolishDemand {
-    double floor, sum; ///< of the qualities of the star
-  };
-  [[nodiscard]] bool polish_beside(const Vector<3> &wanted, const PolishDemand &demand,
+  [[nodiscard]] bool polish_beside(const Vector<3> &wanted, const ShapeDemand &demand,
                                    const PlaceScore &before);
 };
 
