@@ -123,7 +123,7 @@ public:
       return varies_too_fast(99, distortion_.p99, largest_agreeing_distortion);
     return {};
   }
-  AgreementCounts agree(const RemeshSettings &) {
+  AgreementCounts agree() {
     const AgreementCounts counts = anistar::agree(w_, run_);
     // the flips after a move mind no quality
     n_bisections_ += bisect(w_, run_, floor_);

@@ -15,7 +15,7 @@ namespace anistar {
 /// As far as the metric, the settings and the budgets let them.
 ///
 /// @tparam Stars what a dimension adds: `d`; refusal(settings): why agreement is
-/// not made, none where it is; agree(settings); is_certified(settings, agreement) and
+/// not made, none where it is; agree(); is_certified(settings, agreement) and
 /// is_mended(agreement); certify(): the answers for all cells, none when it was cut
 /// short; mend(known); refine(settings, known): consistency; mesh()
 /// out.delaunay is left in the numbering of stars.mesh().
@@ -27,7 +27,7 @@ void certify_stars(Stars &stars, const Run &run, const RemeshSettings &settings,
   if (const auto refusal = stars.refusal(settings)) {
     agreement = *refusal;
   } else {
-    agreement.counts = stars.agree(settings);
+    agreement.counts = stars.agree();
     agreement.outcome =
         run.is_stopped() ? AgreementOutcome::stopped : AgreementOutcome::done;
     agreement.stopped_by = run.monitor.reason();

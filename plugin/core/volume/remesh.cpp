@@ -32,7 +32,12 @@ class VolumeStars {
 public:
   static constexpr std::size_t d = 3;
 
-  VolumeStars(Volume &volume, const Run &run) : volume_(volume), run_(run) {}
+  VolumeStars(Volume &volume, const Run &run, const RemeshSettings &settings)
+      : volume_(volume), run_(run),
+        effort_(settings.agreement == AgreementMode::on ||
+                        settings.consistency != ConsistencyMode::off
+                    ? full_effort
+                    : small_effort) {}
 
   [[nodiscard]] const Triangulation<3> &mesh() const { return volume_.mesh; }
 
@@ -53,11 +58,8 @@ public:
       return varies_too_fast(99, gamma.p99, largest_agreeing_p99);
     return {};
   }
-  AgreementCounts agree(const RemeshSettings &settings) {
-    const bool is_asked = settings.agreement == AgreementMode::on ||
-                          settings.consistency != ConsistencyMode::off;
-    const AgreementCounts counts =
-        anistar::agree(volume_, run_, is_asked ? full_effort : small_effort);
+  AgreementCounts agree() {
+    const AgreementCounts counts = anistar::agree(volume_, run_, effort_);
     renumber(volume_, run_.threads);
     return counts;
   }
@@ -76,7 +78,7 @@ public:
     return run_.is_stopped() ? std::nullopt : std::optional(std::move(known));
   }
   [[nodiscard]] static bool is_mended(const AgreementReport &) { return true; }
-  std::size_t mend(DelaunayBits &known) { return mend_stars(volume_, run_, known); }
+  std::size_t mend(DelaunayBits &known) { return mend_stars(volume_, run_, effort_, known); }
   [[nodiscard]] ConsistencyCounts refine(const RemeshSettings &settings,
                                          DelaunayBits &known) {
     return refine_until_consistent(volume_, run_, settings.parameters, known);
@@ -85,6 +87,7 @@ public:
 private:
   Volume &volume_;
   const Run &run_;
+  AgreementEffort effort_;
 };
 
 /// Whether insertions have left free cells or vertices behind.
@@ -162,10 +165,15 @@ VolumeResult remesh_volume(const VolumeInput &input,
                                    settings.threads);
     const SurfaceProjection project = timed(std::move(projection), monitor);
     const Shaping shaping = shape_volume(
-        [&] { return make_volume(input, metric, background, geometry, project); }, run,
-        watch);
+        [&] {
+          Volume start = make_volume(input, metric, background, geometry, project);
+          if (settings.agreement != AgreementMode::off)
+            rest_where_agreed(start, run);
+          return start;
+        },
+        run, watch);
     Volume &volume = *shaping.volume;
-    VolumeStars stars(volume, run);
+    VolumeStars stars(volume, run, settings);
     certify_stars(stars, run, settings, watch, out);
     if (out.stars.certified && has_gaps(volume.mesh))
       compact(volume, run.threads, out.delaunay);

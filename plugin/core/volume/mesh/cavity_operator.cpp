@@ -285,6 +285,8 @@ void CavityOperator::commit(std::span<const Index> cells) {
     volume_.quality[c] = outer.quality;
     volume_.walled[c] = outer.constraint != none;
     volume_.touch(outer.cell);
+    for (Index v : volume_.mesh.at(outer.cell))
+      volume_.at_rest[v] = 0;
     volume_.state.slabs.add_cell(mesh.cells[c]);
     for (Index v : mesh.cells[c])
       mesh.vertex_cell[v] = outer.cell;

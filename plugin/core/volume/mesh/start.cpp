@@ -68,7 +68,7 @@ void reserve_room(Volume &volume, std::size_t n_vertices, std::size_t n_cells) {
   };
   Triangulation<3> &mesh = volume.mesh;
   reserve(n_vertices, mesh.vertices, mesh.feature, mesh.vertex_cell,
-          mesh.background_cell, volume.support, volume.vertex_clock);
+          mesh.background_cell, volume.support, volume.vertex_clock, volume.at_rest);
   reserve(n_cells, mesh.cells, mesh.neighbours, mesh.constraints, mesh.region,
           volume.quality, volume.walled, volume.cell_clock);
 }

@@ -11,6 +11,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
     v = mesh.add_vertex(vertex, dimension, background_cell);
     support.push_back(lies_on);
     vertex_clock.push_back(clock);
+    at_rest.push_back(0);
     state.slabs.add_vertex(v);
     ridges.resize(mesh.vertices.size());
     return v;
@@ -22,6 +23,7 @@ Index Volume::add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on
   mesh.background_cell[v] = background_cell;
   support[v] = lies_on;
   vertex_clock[v] = clock;
+  at_rest[v] = 0;
   state.slabs.add_vertex(v);
   return v;
 }
@@ -120,6 +122,7 @@ PerCell<Index> renumber(Volume &volume, int threads) {
   const std::size_t n = mesh.vertices.size();
   take_along(volume.support, rank, n);
   take_along(volume.vertex_clock, rank, n);
+  take_along(volume.at_rest, rank, n);
   volume.ridges.renumber(rank, n);
   std::vector<Index> touching;
   for (const auto &[v, cells] : volume.fans)

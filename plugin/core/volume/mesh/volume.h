@@ -28,6 +28,9 @@ struct VolumeMesh {
   /// When a cell, or a cell at a vertex, last changed, in passes.
   PerCell<std::uint32_t> cell_clock;
   PerVertex<std::uint32_t> vertex_clock;
+  /// Vertices whose stars agreed and have kept their cells: what improves shapes leaves
+  /// them alone but for a clear gain.
+  PerVertex<std::uint8_t> at_rest;
   Slabs slabs;
   /// No operation may take the worst cell below this, nor further below.
   double kept_quality = 0;
@@ -71,6 +74,7 @@ public:
   PerCell<std::uint8_t> &walled = state.walled;
   PerCell<std::uint32_t> &cell_clock = state.cell_clock;
   PerVertex<std::uint32_t> &vertex_clock = state.vertex_clock;
+  PerVertex<std::uint8_t> &at_rest = state.at_rest;
   std::uint32_t &clock = shared_->clock;
   std::unordered_map<Index, std::vector<Index>> &fans = state.fans;
   std::vector<Index> &free_vertices = state.free_vertices;
@@ -92,6 +96,7 @@ public:
     return static_cast<double>(quality[c]);
   }
   [[nodiscard]] bool is_walled(Index c) const { return walled[c] != 0; }
+  [[nodiscard]] bool is_at_rest(Index v) const { return at_rest[v] != 0; }
 
   Index add_vertex(const Vertex<3> &vertex, Index dimension, Index lies_on,
                    Index background_cell);

@@ -5,13 +5,18 @@ namespace {
 
 /// Longer rings gain nothing and cost the square of their length.
 constexpr std::size_t longest_ring = 9;
-/// What the worst cell must gain.
-constexpr double swap_gain = 1e-3;
+/// What the worst cell must gain; where a cell is at rest less is not worth what it
+/// undoes.
+constexpr double any_gain = 1e-3, clear_gain = .02;
 
 } // namespace
 
 bool CellSwap::swap(Index c, VolumeCounts &counts) {
   const Cell<3> cell = volume_.mesh.at(c);
+  gain_ = std::all_of(cell.begin(), cell.end(),
+                      [&](Index v) { return volume_.is_at_rest(v); })
+              ? clear_gain
+              : any_gain;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j)
       if (remove_edge(c, cell[i], cell[j])) {
@@ -41,7 +46,7 @@ bool CellSwap::swap_facet(HalfFacet h) {
   }
   const std::array<Index, 2> both{h.cell(), beyond.cell()};
   return operator_.replace(both, volume_.mesh.apex(h), {none, none},
-                           improvement(swap_gain));
+                           improvement(gain_));
 }
 
 bool CellSwap::remove_edge(Index c, Index a, Index b) {
@@ -51,12 +56,12 @@ bool CellSwap::remove_edge(Index c, Index a, Index b) {
   double worst = 1;
   for (Index cell : shell_.all())
     worst = std::min(worst, volume_.quality_of(cell));
-  const double threshold = better_by(swap_gain, worst);
+  const double threshold = better_by(gain_, worst);
   for (std::size_t k = 0; k < shell_.n_ring(); ++k) {
     if (!walls->admits_apex(k) || !is_ring_better(k, threshold))
       continue;
     if (operator_.replace(shell_.all(), shell_.ring[k], {a, b},
-                          improvement(swap_gain, hausdorff_number_)))
+                          improvement(gain_, hausdorff_number_)))
       return true;
     if (volume_.is_put_off)
       return false;

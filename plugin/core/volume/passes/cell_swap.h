@@ -22,6 +22,7 @@ private:
   CavityOperator &operator_;
   double hausdorff_number_;
   Shell shell_;
+  double gain_ = 0; ///< what the worst cell must gain
 
   [[nodiscard]] bool remove_edge(Index c, Index a, Index b);
   [[nodiscard]] bool is_ring_inside();

@@ -24,9 +24,14 @@ constexpr double random_below = .4, random_radius = .2;
 /// Moves may not take the worst cell below this, or below where it is but for
 /// round-off.
 constexpr double move_floor = .35, round_off = 1e-6;
-/// Moves that raise the worst cell by this may lower the mean quality of the star by so
-/// much; others must raise the mean.
-constexpr double least_gain = 1e-4, mean_loss = .02, mean_gain = .002;
+/// Moves that raise the worst cell by `worst` may lower the mean quality of the star by
+/// so much; others must raise the mean.
+struct RequiredGain {
+  double worst, mean_loss, mean;
+};
+constexpr RequiredGain any_gain{.worst = 1e-4, .mean_loss = .02, .mean = .002};
+/// Of stars at rest: less is not worth what it undoes.
+constexpr RequiredGain clear_gain{.worst = .02, .mean_loss = 0, .mean = .01};
 
 /// Edges that a re-insertion may make.
 constexpr double longest_reinserted = 1.6;
@@ -143,16 +148,16 @@ private:
     if (ideal.squaredNorm() < smallest_step * smallest_step && worst > good_quality)
       return;
     for (const double fraction : step_fractions)
-      if (try_move(here.x + in_space(L, fraction * ideal)))
+      if (try_move(v, here.x + in_space(L, fraction * ideal)))
         return;
     if (worst > random_below)
       return;
     CounterRandom random(run_.seed, Stream::relocate, v, volume_.clock);
-    (void)try_move(here.x + in_space(L, random_radius * random_in_ball(random)));
+    (void)try_move(v, here.x + in_space(L, random_radius * random_in_ball(random)));
   }
 
-  /// Moves the vertex of the trial there when that makes its star better.
-  [[nodiscard]] bool try_move(const Vector<3> &x) {
+  /// Moves v, the vertex of the trial, there when that makes its star better.
+  [[nodiscard]] bool try_move(Index v, const Vector<3> &x) {
     trial_.place(x);
     if (!trial_.is_positive())
       return false;
@@ -163,9 +168,10 @@ private:
       return false;
     const double n = static_cast<double>(shapes.size());
     const double sum = trial_.sum_before(), total = shapes.sum();
+    const RequiredGain &gain = volume_.is_at_rest(v) ? clear_gain : any_gain;
     const bool is_better =
-        (least > better_by(least_gain, worst) && total > sum - mean_loss * n) ||
-        total > sum + mean_gain * n;
+        (least > better_by(gain.worst, worst) && total > sum - gain.mean_loss * n) ||
+        total > sum + gain.mean * n;
     if (!is_better || !trial_.keeps_surfaces())
       return false;
     trial_.commit();

@@ -27,7 +27,9 @@ constexpr int first_repair = 9, repair_period = 5;
 /// metrics vary a lot the rest is stuck without.
 constexpr double wandering_radius = .1;
 /// So many trials are made whatever the number of cells.
-constexpr double fewest_trials = 2000;
+constexpr double fewest_trials = 30000;
+/// What a round takes for each failing facet, about.
+constexpr std::size_t directed_trials = 3, random_trials = 25;
 /// Re-insertion finds most of what it can in the first round: it is tried every so
 /// many.
 constexpr int reinsertion_period = 4;
@@ -38,6 +40,11 @@ constexpr int n_last_polishes = 2;
 /// milliseconds.
 constexpr std::size_t calls_between_looks = 64;
 
+/// A mesh may rest when less than this part of its facets fails, and this part of the
+/// edges of some cells is of about unit length.
+constexpr double nearly_agreed = .005, mostly = .9;
+constexpr double shortest_unit_edge = .7, longest_unit_edge = 1.42;
+constexpr std::size_t sampled_cells = 4096;
 /// With no more failing facets than this, and one for so many cells, it would be a pity
 /// to stop.
 constexpr std::size_t nearly_none = 20, cells_per_facet_left = 2000;
@@ -89,20 +96,17 @@ public:
         left_(nearly_none + n_cells / cells_per_facet_left), fewest_(failing) {}
 
   [[nodiscard]] int last_round() const { return patience_ * max_rounds; }
-  /// From here on trials count.
-  void begin(std::size_t trials) {
-    paid_ = trials;
-    since_ = 0;
-  }
   /// Why no round follows on one that leaves so many failing facets.
-  [[nodiscard]] std::optional<AgreementStop> stop(std::size_t failing,
-                                                  std::size_t trials) {
+  /// @param trials made so far
+  /// @param per_facet those that the next round takes
+  [[nodiscard]] std::optional<AgreementStop>
+  stop(std::size_t failing, std::size_t trials, std::size_t per_facet) {
     ++since_;
     if (double(failing) < (1 - least_reduction) * double(fewest_)) {
       fewest_ = failing;
       since_ = 0;
     }
-    if (failing > left_ && double(trials - paid_) > affordable_)
+    if (failing > left_ && double(trials + per_facet * failing) > affordable_)
       return AgreementStop::trials;
     if (since_ >= patience_ * (failing <= few ? patience_with_few : patience))
       return AgreementStop::stalled;
@@ -112,7 +116,7 @@ public:
 private:
   int patience_;
   double affordable_; ///< trials
-  std::size_t left_, fewest_, paid_ = 0;
+  std::size_t left_, fewest_;
   int since_ = 0; ///< rounds since there were clearly fewer
 };
 
@@ -198,6 +202,9 @@ private:
     failing_ = std::move(left);
   }
 
+  [[nodiscard]] static bool is_directed(int round) {
+    return round < n_directed || round % directed_period == 0;
+  }
   AgreementStop reduce(Effort effort) {
     for (int round = 0; round < effort.last_round(); ++round) {
       if (failing_.empty())
@@ -205,20 +212,16 @@ private:
       ++counts_.rounds;
       const double fraction = static_cast<double>(round) / effort.last_round();
       const bool is_going =
-          round < n_directed || round % directed_period == 0
-              ? step_all(round)
-              : visit_failing(round, fraction);
+          is_directed(round) ? step_all(round) : visit_failing(round, fraction);
       update_list();
       if (!is_going)
         return AgreementStop::interrupted;
-      if (round + 1 == n_directed) {
-        if (failing_.size() > few)
-          (void)polish(start_);
-        effort.begin(n_trials());
-      }
-      if (const auto stop = effort.stop(failing_.size(), n_trials());
-          stop && round + 1 >= n_directed)
+      if (const auto stop =
+              effort.stop(failing_.size(), n_trials(),
+                          is_directed(round + 1) ? directed_trials : random_trials))
         return *stop;
+      if (round + 1 == n_directed && failing_.size() > few)
+        (void)polish(start_);
     }
     return failing_.empty() ? AgreementStop::agreed : AgreementStop::rounds;
   }
@@ -361,6 +364,44 @@ private:
 };
 
 } // namespace
+
+namespace {
+
+/// Whether most edges of a sample of the cells are of about unit length.
+bool has_unit_edges(const Triangulation<3> &mesh) {
+  const std::size_t step = std::max<std::size_t>(1, mesh.cells.size() / sampled_cells);
+  std::size_t n = 0, unit = 0;
+  for (std::size_t c = 0; c < mesh.cells.size(); c += step)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index v = mesh.cells[c][i], w = mesh.cells[c][(i + 1) % 4];
+      const double length = fast_length(mesh.vertex(v), mesh.vertex(w));
+      ++n;
+      unit += length > shortest_unit_edge && length < longest_unit_edge;
+    }
+  return static_cast<double>(unit) > mostly * static_cast<double>(n);
+}
+
+} // namespace
+
+void rest_where_agreed(Volume &volume, const Run &run) {
+  const Triangulation<3> &mesh = volume.mesh;
+  if (!has_unit_edges(mesh))
+    return;
+  FacetMargins margins(mesh);
+  margins.fill(run.threads);
+  PerVertex<std::uint8_t> agrees(mesh.vertices.size(), 1);
+  std::size_t failing = 0;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    for (std::size_t i = 0; i < 4; ++i)
+      if (margins.fails(HalfFacet(static_cast<Index>(c), i))) {
+        ++failing;
+        for (Index v : mesh.cells[c])
+          agrees[v] = 0;
+      }
+  // each facet was seen from both cells
+  if (static_cast<double>(failing) < nearly_agreed * 4 * static_cast<double>(mesh.cells.size()))
+    volume.at_rest = std::move(agrees);
+}
 
 AgreementCounts agree(Volume &volume, const Run &run, const AgreementEffort &effort) {
   return VolumeAgreement(volume, run).make(effort);

@@ -9,8 +9,6 @@ namespace anistar {
 namespace {
 
 constexpr int max_rounds = 8;
-/// More failures than this part of the cells are no accidents of an agreeing mesh.
-constexpr double accidental = .03;
 /// The rounds go on while one leaves less than this part of the failing cells.
 constexpr double good_progress = .9;
 /// From this round on random places are tried too, within this metric distance.
@@ -24,10 +22,10 @@ public:
         test_(certified(mesh_)), state_(mesh_),
         view_{volume, state_, run.hausdorff.surface, {}}, relocation_(view_) {}
 
-  std::size_t mend() {
+  std::size_t mend(double mended_part) {
     std::size_t moves = 0;
     std::vector<Index> failing = failing_cells(mesh_, known_.bits);
-    if (double(failing.size()) > accidental * double(mesh_.n_cells()))
+    if (double(failing.size()) > mended_part * double(mesh_.n_cells()))
       return moves;
     for (int round = 0; round < max_rounds && !failing.empty(); ++round) {
       const double fraction = double(round) / max_rounds;
@@ -109,8 +107,9 @@ private:
 
 } // namespace
 
-std::size_t mend_stars(Volume &volume, const Run &run, DelaunayBits &known) {
-  return VolumeMender(volume, run, known).mend();
+std::size_t mend_stars(Volume &volume, const Run &run, const AgreementEffort &effort,
+                       DelaunayBits &known) {
+  return VolumeMender(volume, run, known).mend(effort.mended_part);
 }
 
 } // namespace anistar

@@ -4,7 +4,7 @@
 
 #include "base/run.h"
 #include "certificate/certificate.h"
-#include "volume/mesh/volume.h"
+#include "volume/stars/agreement.h"
 
 namespace anistar {
 
@@ -12,8 +12,10 @@ namespace anistar {
 /// ball of a cell that is no neighbour of its is watched like a facet from then on (see
 /// FarViolations). No more facets fail then, no quality falls below agreement_floor and
 /// no edge becomes worse. Vertices on surfaces and ridges slide along them.
+/// @param effort tells how many cells may fail for it to begin
 /// @param known the answers for the mesh, before and after
 /// @returns the number of moves
-std::size_t mend_stars(Volume &volume, const Run &run, DelaunayBits &known);
+std::size_t mend_stars(Volume &volume, const Run &run, const AgreementEffort &effort,
+                       DelaunayBits &known);
 
 } // namespace anistar
