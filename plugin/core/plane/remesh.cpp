@@ -142,7 +142,10 @@ public:
   [[nodiscard]] static bool is_mended(const AgreementReport &agreement) {
     return agreement.was_tried();
   }
-  std::size_t mend(DelaunayBits &known) { return mend_stars(w_, run_, known); }
+  /// What agreement has counted stays: no more edges disagree.
+  MendingCounts mend(DelaunayBits &known) {
+    return {.moves = mend_stars(w_, run_, known)};
+  }
   [[nodiscard]] ConsistencyCounts refine(const RemeshSettings &settings,
                                          DelaunayBits &known) {
     return refine_until_consistent(w_, run_, settings.parameters,

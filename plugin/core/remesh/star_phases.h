@@ -6,7 +6,7 @@
 #include "base/stopwatch.h"
 #include "remesh/remesh_result.h"
 #include "remesh/remesh_settings.h"
-#include "stars/star_mending.h"
+#include "stars/rules.h"
 
 #include <optional>
 
@@ -39,8 +39,12 @@ void certify_stars(Stars &stars, const Run &run, const RemeshSettings &settings,
   if (!known)
     return;
   out.stars.failures = failing_cells(stars.mesh(), known->bits).size();
-  if (stars.is_mended(agreement))
-    out.stars.moves = stars.mend(*known);
+  if (stars.is_mended(agreement)) {
+    const MendingCounts mended = stars.mend(*known);
+    out.stars.moves = mended.moves;
+    if (agreement.was_tried())
+      agreement.counts.after += static_cast<std::size_t>(mended.more_failing);
+  }
   if (settings.consistency != ConsistencyMode::off) {
     watch.phase("consistency");
     out.consistency = stars.refine(settings, *known);

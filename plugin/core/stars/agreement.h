@@ -60,4 +60,10 @@ struct AgreementReport {
           .largest_ln_gamma = largest};
 }
 
+/// What mending has done.
+struct MendingCounts {
+  std::size_t moves = 0;
+  std::ptrdiff_t more_failing = 0; ///< facets that fail now less those mended
+};
+
 } // namespace anistar

@@ -107,6 +107,17 @@ certified_fractions(const Triangulation<d> &mesh,
           static_cast<double>(stars) / static_cast<double>(used)};
 }
 
+/// The cells that are not Delaunay in the metrics of all their vertices.
+template <std::size_t d>
+[[nodiscard]] std::vector<Index> failing_cells(const Triangulation<d> &mesh,
+                                               const std::vector<std::uint8_t> &bits) {
+  std::vector<Index> cells;
+  for (std::size_t c = 0; c < bits.size(); ++c)
+    if (mesh.is_alive(static_cast<Index>(c)) && bits[c] != all_vertices<d>)
+      cells.push_back(static_cast<Index>(c));
+  return cells;
+}
+
 /// The part of the cells that is not Delaunay in the metrics of all its vertices.
 template <std::size_t d>
 [[nodiscard]] double failing_fraction(const Triangulation<d> &mesh,

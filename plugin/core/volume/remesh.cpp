@@ -78,7 +78,9 @@ public:
     return run_.is_stopped() ? std::nullopt : std::optional(std::move(known));
   }
   [[nodiscard]] static bool is_mended(const AgreementReport &) { return true; }
-  std::size_t mend(DelaunayBits &known) { return mend_stars(volume_, run_, effort_, known); }
+  MendingCounts mend(DelaunayBits &known) {
+    return mend_stars(volume_, run_, effort_, known);
+  }
   [[nodiscard]] ConsistencyCounts refine(const RemeshSettings &settings,
                                          DelaunayBits &known) {
     return refine_until_consistent(volume_, run_, settings.parameters, known);

@@ -2,7 +2,7 @@
 
 #include "base/ellipse_sampler.h"
 #include "plane/mesh/vertex_trial.h"
-#include "stars/star_mending.h"
+#include "plane/stars/star_mender.h"
 
 namespace anistar {
 namespace {

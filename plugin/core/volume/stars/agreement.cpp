@@ -68,7 +68,7 @@ template <class Move> class SlabMoves {
 public:
   SlabMoves(Volume &volume, AgreementState &state, double hausdorff_number,
             const Move &move)
-      : view_{volume, state, hausdorff_number, {}}, relocation_(view_), move_(move) {}
+      : view_{volume, state, hausdorff_number}, relocation_(view_), move_(move) {}
 
   MoveCounts counts;
 
@@ -91,8 +91,8 @@ class Effort {
 public:
   Effort(const AgreementEffort &effort, std::size_t n_cells, std::size_t failing)
       : patience_(effort.patience),
-        affordable_(effort.patience * (effort.trials_per_cell * double(n_cells) +
-                                       fewest_trials)),
+        affordable_(effort.patience *
+                    (effort.trials_per_cell * double(n_cells) + fewest_trials)),
         left_(nearly_none + n_cells / cells_per_facet_left), fewest_(failing) {}
 
   [[nodiscard]] int last_round() const { return patience_ * max_rounds; }
@@ -123,9 +123,9 @@ private:
 class VolumeAgreement {
 public:
   VolumeAgreement(Volume &volume, const Run &run)
-      : volume_(volume), mesh_(volume.mesh), run_(run), state_(volume.mesh),
-        view_{volume, state_, run.hausdorff.surface, {}}, relocation_(view_),
-        repair_(view_, run.monitor) {}
+      : volume_(volume), mesh_(volume.mesh), run_(run),
+        state_(volume.mesh), view_{volume, state_, run.hausdorff.surface},
+        relocation_(view_), repair_(view_, run.monitor) {}
 
   AgreementCounts make(const AgreementEffort &effort) {
     start_ = ++volume_.clock;
@@ -232,6 +232,11 @@ private:
     return {t[0], t[1], t[2], mesh_.apex(h), mesh_.apex(mesh_.opposite(h))};
   }
 
+  [[nodiscard]] CounterRandom random_at(HalfFacet h, int round) const {
+    return {run_.seed, Stream::repair_facet, h.code(),
+            static_cast<std::uint32_t>(round)};
+  }
+
   /// Moves on several threads. @returns how many
   template <class SlabOf, class Move>
   std::size_t move_by_slabs(std::vector<Index> items, SlabOf slab_of,
@@ -274,7 +279,7 @@ private:
     return !run_.is_stopped();
   }
   std::size_t step_at(VolumeRelocation &relocation, HalfFacet h, int round) {
-    CounterRandom random(run_.seed, Stream::repair_facet, h.code(), round);
+    CounterRandom random = random_at(h, round);
     const std::array<Index, 5> vertices = vertices_at(h);
     const auto first = static_cast<std::size_t>(5 * random.uniform());
     std::size_t moves = 0;
@@ -292,7 +297,7 @@ private:
       const HalfFacet h = failing_[k];
       if (!still_fails(h))
         continue;
-      CounterRandom random(run_.seed, Stream::repair_facet, h.code(), round);
+      CounterRandom random = random_at(h, round);
       if (is_repairing)
         counts_.repairs += repair_.collapse_or_insert(h, random);
       else
@@ -399,7 +404,8 @@ void rest_where_agreed(Volume &volume, const Run &run) {
           agrees[v] = 0;
       }
   // each facet was seen from both cells
-  if (static_cast<double>(failing) < nearly_agreed * 4 * static_cast<double>(mesh.cells.size()))
+  if (static_cast<double>(failing) <
+      nearly_agreed * 4 * static_cast<double>(mesh.cells.size()))
     volume.at_rest = std::move(agrees);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // What agreement knows of a volume mesh.
 
-#include "volume/stars/far_violations.h"
 #include "volume/stars/facet_margins.h"
+#include "volume/stars/far_violations.h"
 
 namespace anistar {
 
@@ -28,8 +28,9 @@ struct AgreementState {
 struct AgreementView {
   Volume &volume;
   AgreementState &state;
-  double hausdorff_number;    ///< of curved surfaces, relative to an edge
-  std::vector<Index> changed; ///< cells, some of them more than once
+  double hausdorff_number;         ///< of curved surfaces, relative to an edge
+  std::vector<Index> changed{};    ///< cells, some of them more than once
+  std::ptrdiff_t more_failing = 0; ///< facets, by the moves made
 };
 
 /// The quality below which nothing may fall that was not below before.

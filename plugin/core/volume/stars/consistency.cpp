@@ -38,8 +38,8 @@ constexpr int fewer_failing = -1, most_allowed = 2, rounds_per_facet = 4;
 /// first time.
 constexpr double agreeable = .05;
 constexpr int agreement_period = 5;
-constexpr AgreementEffort patient_effort{
-    full_effort.trials_per_cell, full_effort.mended_part, 5};
+constexpr AgreementEffort patient_effort{full_effort.trials_per_cell,
+                                         full_effort.mended_part, 5};
 /// The clock is looked at after so many bad cells.
 constexpr std::size_t cells_between_looks = 32;
 /// New vertices keep this distance from the others in their own metric (packing).
@@ -136,7 +136,7 @@ public:
     }
     renew(since, fraction_of(counts), known);
     if (agreeing || bad.size() <= last_failing)
-      counts.moves += mend_stars(volume_, run, full_effort, known);
+      counts.moves += mend_stars(volume_, run, full_effort, known).moves;
   }
 
   [[nodiscard]] bool starts_at_centre(Rule) const { return true; }

@@ -166,9 +166,12 @@ void MovingVertex::remember() {
 void MovingVertex::move_to_best() {
   trial_.commit(best_);
   view_.changed.insert(view_.changed.end(), star_.begin(), star_.end());
+  view_.more_failing -= failing_facets_;
   for (std::size_t k = 0; k < facets_.size(); ++k)
-    if (facets_[k].at.exists())
+    if (facets_[k].at.exists()) {
       view_.state.margins.put(facets_[k].at, as_margin(best_margins_[k]));
+      view_.more_failing += best_margins_[k] > 0;
+    }
   PerVertex<std::uint8_t> &is_stuck = view_.state.is_stuck;
   is_stuck[v_] = 0;
   for (Index u : ring_)

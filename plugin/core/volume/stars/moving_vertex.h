@@ -95,7 +95,7 @@ private:
   std::vector<Index> star_, ring_; ///< its cells, and the vertices it has edges with
   std::vector<TestedFacet> facets_, safe_;
   std::vector<double> margins_; ///< at the place that is tried
-  int failing_facets_ = 0; ///< where v is in the mesh
+  int failing_facets_ = 0;      ///< where v is in the mesh
   TriedPlace best_;
   std::vector<double> best_margins_;
   std::size_t trials_ = 0;

@@ -135,7 +135,7 @@ bool VolumeRelocation::polish(Index v) {
     return false;
   const double gain = polish_gain * static_cast<double>(vertex_.star().size());
   const ShapeDemand demand{floor_of(vertex_.least_quality()),
-                            vertex_.sum_of_qualities() + gain};
+                           vertex_.sum_of_qualities() + gain};
   std::optional<PlaceScore> before; // few places are good enough to ask for it
   double wanted = 0;                // the part of the step that only facets forbid
   for (const double fraction : polish_fractions) {
@@ -156,8 +156,7 @@ bool VolumeRelocation::polish(Index v) {
 }
 
 /// The place as near to the wanted one as the facets let.
-bool VolumeRelocation::polish_beside(const Vector<3> &wanted,
-                                     const ShapeDemand &demand,
+bool VolumeRelocation::polish_beside(const Vector<3> &wanted, const ShapeDemand &demand,
                                      const PlaceScore &before) {
   vertex_.return_home();
   bounds_.begin(volume_, vertex_);

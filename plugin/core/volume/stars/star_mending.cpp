@@ -2,7 +2,7 @@
 
 #include "certificate/delaunay_test.h"
 #include "stars/certify_all.h"
-#include "stars/star_mending.h"
+#include "stars/rules.h"
 #include "volume/stars/relocation.h"
 
 namespace anistar {
@@ -19,25 +19,27 @@ class VolumeMender {
 public:
   VolumeMender(Volume &volume, const Run &run, DelaunayBits &known)
       : volume_(volume), mesh_(volume.mesh), run_(run), known_(known),
-        test_(certified(mesh_)), state_(mesh_),
-        view_{volume, state_, run.hausdorff.surface, {}}, relocation_(view_) {}
+        test_(certified(mesh_)),
+        state_(mesh_), view_{volume, state_, run.hausdorff.surface},
+        relocation_(view_) {}
 
-  std::size_t mend(double mended_part) {
-    std::size_t moves = 0;
+  MendingCounts mend(double mended_part) {
+    MendingCounts counts;
     std::vector<Index> failing = failing_cells(mesh_, known_.bits);
     if (double(failing.size()) > mended_part * double(mesh_.n_cells()))
-      return moves;
+      return counts;
     for (int round = 0; round < max_rounds && !failing.empty(); ++round) {
       const double fraction = double(round) / max_rounds;
       const std::size_t before = failing.size(), moved = move_at(failing, round);
       renew(fraction);
-      moves += moved;
+      counts.moves += moved;
       failing = failing_cells(mesh_, known_.bits);
       if (moved == 0 || double(failing.size()) > good_progress * double(before) ||
           !run_.monitor.look(fraction))
         break;
     }
-    return moves;
+    counts.more_failing = view_.more_failing;
+    return counts;
   }
 
 private:
@@ -58,9 +60,9 @@ private:
       const auto first = static_cast<std::size_t>(5 * random.uniform());
       for (std::size_t k = 0; k < 5 && is_violated(violation); ++k) {
         const Index v = violation[(first + k) % 5];
-        moves += relocation_.step(v) ||
-                 (round >= first_random &&
-                  relocation_.relocate(v, random_radius, random));
+        moves +=
+            relocation_.step(v) ||
+            (round >= first_random && relocation_.relocate(v, random_radius, random));
       }
     }
     return moves;
@@ -70,7 +72,8 @@ private:
   }
 
   /// What makes cells fail. That which no facet tells of is watched from now on.
-  [[nodiscard]] std::vector<FarViolation> violations(const std::vector<Index> &failing) {
+  [[nodiscard]] std::vector<FarViolation>
+  violations(const std::vector<Index> &failing) {
     std::vector<FarViolation> found;
     for (Index c : failing) {
       const Cell<3> &cell = mesh_.at(c);
@@ -107,8 +110,8 @@ private:
 
 } // namespace
 
-std::size_t mend_stars(Volume &volume, const Run &run, const AgreementEffort &effort,
-                       DelaunayBits &known) {
+MendingCounts mend_stars(Volume &volume, const Run &run, const AgreementEffort &effort,
+                         DelaunayBits &known) {
   return VolumeMender(volume, run, known).mend(effort.mended_part);
 }
 

@@ -14,8 +14,7 @@ namespace anistar {
 /// no edge becomes worse. Vertices on surfaces and ridges slide along them.
 /// @param effort tells how many cells may fail for it to begin
 /// @param known the answers for the mesh, before and after
-/// @returns the number of moves
-std::size_t mend_stars(Volume &volume, const Run &run, const AgreementEffort &effort,
-                       DelaunayBits &known);
+MendingCounts mend_stars(Volume &volume, const Run &run, const AgreementEffort &effort,
+                         DelaunayBits &known);
 
 } // namespace anistar

@@ -59,9 +59,8 @@ void StepBounds::begin(const Volume &volume, const MovingVertex &vertex) {
     axes_.col(k) = anistar::in_space(L, Vector<3>::Unit(k));
     if (dimension == Triangulation<3>::interior)
       continue;
-    const Vector<3> on =
-        volume.surface.place(dimension, volume.support_of(vertex.id()),
-                             home.x + difference_step * axes_.col(k));
+    const Vector<3> on = volume.surface.place(dimension, volume.support_of(vertex.id()),
+                                              home.x + difference_step * axes_.col(k));
     axes_.col(k) = (on - home.x) / difference_step;
   }
 }
@@ -113,17 +112,18 @@ void StepBounds::keep_qualities(const Volume &volume, MovingVertex &vertex,
     std::vector<double> &slopes = quality_slopes_[k];
     slopes.resize(star.size());
     for (std::size_t i = 0; i < star.size(); ++i)
-      slopes[i] =
-          (static_cast<double>(moved.quality(i)) - volume.quality_of(star[i])) /
-          difference_step;
+      slopes[i] = (static_cast<double>(moved.quality(i)) - volume.quality_of(star[i])) /
+                  difference_step;
   }
   for (std::size_t i = 0; i < star.size(); ++i) {
     const double q = volume.quality_of(star[i]);
     if (q >= near)
       continue;
-    const double least = q > floor + kept_above_floor ? floor + kept_above_floor : floor;
-    bounds_.push_back({least - q, {-quality_slopes_[0][i], -quality_slopes_[1][i],
-                                   -quality_slopes_[2][i]}});
+    const double least =
+        q > floor + kept_above_floor ? floor + kept_above_floor : floor;
+    bounds_.push_back(
+        {least - q,
+         {-quality_slopes_[0][i], -quality_slopes_[1][i], -quality_slopes_[2][i]}});
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Failures of the certificate that no test on one facet can see, and the loop that
-// mends them by moving vertices; for meshes of triangles and of tetrahedra.
+// mends them by moving vertices; for meshes of triangles.
 
 #include "base/run.h"
 #include "certificate/delaunay_test.h"
@@ -14,9 +14,9 @@
 namespace anistar {
 
 /// What is looked at to mend a failing cell. The topology of the mesh stays.
-template <std::size_t d> class StarFailures {
+class StarFailures {
 public:
-  explicit StarFailures(const Triangulation<d> &mesh)
+  explicit StarFailures(const Triangulation<2> &mesh)
       : mesh_(mesh), test_(certified(mesh)), seen_(mesh.cells.size(), 0) {}
 
   /// Vertices whose move could mend a cell: those found inside of its balls, its own,
@@ -34,7 +34,7 @@ public:
       return found;
     for (Index v : mesh_.at(cell))
       add(v);
-    for (std::size_t i = 0; i <= d; ++i)
+    for (std::size_t i = 0; i < 3; ++i)
       if (const HalfFacet beyond = mesh_.opposite(HalfFacet(cell, i)); beyond.exists())
         add(mesh_.apex(beyond));
     return found;
@@ -54,7 +54,7 @@ public:
     std::size_t begin = 0;
     for (int layer = 0; layer < 3; ++layer)
       for (const std::size_t end = cells_.size(); begin < end; ++begin)
-        for (std::size_t i = 0; i <= d; ++i) {
+        for (std::size_t i = 0; i < 3; ++i) {
           const HalfFacet beyond = mesh_.opposite(HalfFacet(cells_[begin], i));
           if (beyond.exists() && std::exchange(seen_[beyond.cell()], epoch_) != epoch_)
             cells_.push_back(beyond.cell());
@@ -77,7 +77,7 @@ public:
   [[nodiscard]] int count_moved(Index v, int enough) {
     int n = 0;
     for (std::size_t k = 0; k < cells_.size() && n < enough; ++k)
-      if (k < n_star_ || known(cells_[k]) != all_vertices<d> || may_hold(cells_[k], v))
+      if (k < n_star_ || known(cells_[k]) != all_vertices<2> || may_hold(cells_[k], v))
         n += missing(test_.bits(cells_[k]));
     return n;
   }
@@ -88,8 +88,8 @@ public:
   }
 
 private:
-  const Triangulation<d> &mesh_;
-  DelaunayTest<d> test_;
+  const Triangulation<2> &mesh_;
+  DelaunayTest<2> test_;
   std::vector<std::uint8_t> known_; ///< per cell, the answer before the trial
   std::vector<std::uint32_t> seen_; ///< per cell
   std::uint32_t epoch_ = 0;
@@ -105,28 +105,18 @@ private:
     return bits;
   }
   [[nodiscard]] static int missing(std::uint8_t bits) {
-    return int(d + 1) - std::popcount(static_cast<unsigned>(bits));
+    return 3 - std::popcount(static_cast<unsigned>(bits));
   }
   /// Whether one of the balls of a cell may have a vertex inside.
   [[nodiscard]] bool may_hold(Index c, Index v) const {
-    const Simplex<d> s = mesh_.simplex(c);
+    const Simplex<2> s = mesh_.simplex(c);
     return std::any_of(mesh_.at(c).begin(), mesh_.at(c).end(), [&](Index of) {
-      return !Circumball<d>(mesh_.vertex(of).M, s)
+      return !Circumball<2>(mesh_.vertex(of).M, s)
                   .power(mesh_.vertex(v).x)
                   .is_positive();
     });
   }
 };
-
-template <std::size_t d>
-[[nodiscard]] std::vector<Index> failing_cells(const Triangulation<d> &mesh,
-                                               const std::vector<std::uint8_t> &bits) {
-  std::vector<Index> cells;
-  for (std::size_t c = 0; c < bits.size(); ++c)
-    if (mesh.is_alive(static_cast<Index>(c)) && bits[c] != all_vertices<d>)
-      cells.push_back(static_cast<Index>(c));
-  return cells;
-}
 
 /// Mends failing cells by moving one vertex for each.
 ///
@@ -134,9 +124,9 @@ template <std::size_t d>
 /// and `relocate_where(v, radius, random, accept)`, which tries places ever further off
 /// where nothing that agreement knows is worse, asks accept() when v is there, and
 /// tells whether one was accepted; else v is where it was
-template <std::size_t d, class Relocation> class StarMender {
+template <class Relocation> class StarMender {
 public:
-  StarMender(const Triangulation<d> &mesh, Relocation &relocation, const Run &run)
+  StarMender(const Triangulation<2> &mesh, Relocation &relocation, const Run &run)
       : mesh_(mesh), relocation_(relocation), failures_(mesh), run_(run) {}
 
   /// Moves the vertex inside the ball of a failing cell, one of its own or one across
@@ -160,7 +150,7 @@ public:
   /// Decides again where cells have changed, `done` being the part of the rounds
   /// behind.
   void renew(DelaunayBits &known, double done) {
-    renew_bits<d>(certified(mesh_), changed_, run_.threads,
+    renew_bits<2>(certified(mesh_), changed_, run_.threads,
                   to_the_end(run_.monitor, done), known);
     changed_.clear();
   }
@@ -169,9 +159,9 @@ private:
   /// Metric distance up to which places are tried.
   static constexpr double farthest = .3;
 
-  const Triangulation<d> &mesh_;
+  const Triangulation<2> &mesh_;
   Relocation &relocation_;
-  StarFailures<d> failures_;
+  StarFailures failures_;
   const Run &run_;
   std::vector<Index> changed_; ///< cells
 };
@@ -182,8 +172,8 @@ inline constexpr double accidental = .005;
 /// Mends the failing cells one by one, round by round; hopeless when there are many.
 /// @param relocation see StarMender
 /// @returns the number of moves; `known` is true of the mesh again
-template <std::size_t d, class Relocation>
-std::size_t mend_failures(const Triangulation<d> &mesh, Relocation &relocation,
+template <class Relocation>
+std::size_t mend_failures(const Triangulation<2> &mesh, Relocation &relocation,
                           const Run &run, DelaunayBits &known) {
   constexpr int max_rounds = 8;
   std::size_t moves = 0;
@@ -191,7 +181,7 @@ std::size_t mend_failures(const Triangulation<d> &mesh, Relocation &relocation,
   if (failing.empty() || static_cast<double>(failing.size()) >
                              accidental * static_cast<double>(mesh.n_cells()))
     return moves;
-  StarMender<d, Relocation> mender(mesh, relocation, run);
+  StarMender<Relocation> mender(mesh, relocation, run);
   const auto go_on = [&](int round) {
     return run.monitor.look(double(round) / max_rounds);
   };
