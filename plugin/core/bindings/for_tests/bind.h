@@ -7,6 +7,7 @@ namespace anistar::bindings {
 
 namespace nb = nanobind;
 
+void bind_directed_steps(nb::module_ &module);
 void bind_predicates(nb::module_ &module);
 void bind_renewed_bits(nb::module_ &module);
 void bind_tet_shape(nb::module_ &module);
