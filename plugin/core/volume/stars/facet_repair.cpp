@@ -138,7 +138,7 @@ bool FacetRepair::collapse(Index v, Index u) {
 bool FacetRepair::insert(Index c, Index a, Index b, CounterRandom &random) {
   if (!monitor_.has_room(volume_.n_vertices()) ||
       !shell_of(volume_.mesh, c, a, b, shell_) || !shell_.is_closed ||
-      walls_at(volume_, shell_).n != 0)
+      feature_of(volume_, shell_).dimension != Triangulation<3>::interior)
     return false;
   const Vertex<3> p = volume_.mesh.vertex(a), q = volume_.mesh.vertex(b);
   const Matrix<3> L = lower_factor<3>(p.M);
