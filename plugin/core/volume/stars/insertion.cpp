@@ -1,5 +1,7 @@
 #include "volume/stars/insertion.h"
 
+#include "volume/mesh/vertex_star.h"
+
 #include <tuple>
 
 namespace anistar {
@@ -41,7 +43,7 @@ bool VolumeInsertion::gather(const Vertex<3> &p, std::span<const Index> seeds,
   if (cells_.size() > max_cells || !shrink(seeds.size()))
     return false;
   bound();
-  return keeps_vertices();
+  return keeps_vertices() && keeps_ridges();
 }
 
 void VolumeInsertion::grow() {
@@ -119,6 +121,30 @@ bool VolumeInsertion::keeps_vertices() {
       if (!volume_.is_marked_vertex(v))
         return false;
   return true;
+}
+
+/// Lines inside of regions are edges of no wall: a cavity could swallow them.
+bool VolumeInsertion::keeps_ridges() const {
+  for (Index c : cells_) {
+    const Cell<3> &cell = volume_.mesh.at(c);
+    if (!has_ridge(volume_, cell))
+      continue;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (volume_.ridges.find(cell[i], cell[j]) != none && !stays(cell[i], cell[j]))
+          return false;
+  }
+  return true;
+}
+
+/// Whether an edge of the cavity is one of its boundary too, or is to change.
+bool VolumeInsertion::stays(Index a, Index b) const {
+  const auto is_end = [&](Index v) { return v == a || v == b; };
+  if (is_end(rule_.vertex) || (is_end(rule_.lost[0]) && is_end(rule_.lost[1])))
+    return true;
+  return std::any_of(outers_.begin(), outers_.end(), [&](const Outer &outer) {
+    return std::count_if(outer.v.begin(), outer.v.end(), is_end) == 2;
+  });
 }
 
 HalfFacet VolumeInsertion::encroached() const {

@@ -38,8 +38,8 @@ public:
 
   /// Takes up a point: the cells around the seeds whose M_p-ball contains it, less
   /// those that would leave a cell below the floor. Walls are not crossed.
-  /// @returns false when it swallows a vertex, comes too near to one, or a seed cannot
-  /// be part of its cavity.
+  /// @returns false when it swallows a vertex or a ridge, comes too near to a vertex,
+  /// or a seed cannot be part of its cavity.
   [[nodiscard]] bool gather(const Vertex<3> &p, std::span<const Index> seeds,
                             const EntryRule &rule);
   /// A constrained facet of the cavity that the point encroaches upon: it lies in the
@@ -77,6 +77,8 @@ private:
   [[nodiscard]] bool shrink(std::size_t n_seeds);
   void bound();
   [[nodiscard]] bool keeps_vertices();
+  [[nodiscard]] bool keeps_ridges() const;
+  [[nodiscard]] bool stays(Index a, Index b) const;
   [[nodiscard]] AgreementCost cost_before() const;
   [[nodiscard]] AgreementCost cost_after();
   [[nodiscard]] bool is_sliver(const Outer &outer, double sigma_0, double radius) const;
