@@ -2,6 +2,8 @@
 
 import functools
 import re
+import signal
+import time
 
 import numpy as np
 import pytest
@@ -179,3 +181,37 @@ def test_the_bytes_do_not_depend_on_the_number_of_threads():
         assert other.report.counts == one.report.counts
         assert other.report.verdict == one.report.verdict
     assert_known(one)
+
+
+def stopped_in_the_middle_of(where, stop):
+    """A call of remesh that hears `stop` in a phase that has made its first steps."""
+    mesh, heard = two_region_cube(6), []
+
+    def listen(phase, fraction):
+        heard.append(phase)
+        if phase == where and heard.count(where) == 3:
+            stop()
+
+    options = RemeshOptions(max_seconds=3.0, callback=listen)
+    done = remesh(mesh, bending_layer(mesh, 700), options)
+    assert heard.count(where) >= 3
+    return mesh, done
+
+
+@pytest.mark.parametrize("where", ["agreement", "certificate"])
+def test_a_budget_that_is_spent_in_the_middle_leaves_a_valid_mesh_and_no_verdict(where):
+    mesh, done = stopped_in_the_middle_of(where, lambda: time.sleep(3.01))
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+    assert done.report.stop_reason == "max_seconds"
+    assert done.report.star_ok is None
+    assert done.report.verdict == "no certificate: stopped by max_seconds"
+    if where == "agreement":
+        assert re.fullmatch(r"done, interrupted with \d+ facets left", done.report.agreement)
+    anew = certified_anew(done)
+    assert np.array_equal(certify(done.mesh, done.metric).delaunay, anew.delaunay)
+
+
+@pytest.mark.parametrize("where", ["agreement", "certificate"])
+def test_ctrl_c_in_the_middle_is_heard(where):
+    with pytest.raises(KeyboardInterrupt):
+        stopped_in_the_middle_of(where, lambda: signal.raise_signal(signal.SIGINT))
