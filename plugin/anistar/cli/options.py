@@ -143,7 +143,11 @@ _REMESH: dict[str, tuple[Any, str]] = {
         "(default): only where the mesh cannot resolve the metric",
     ),
     "frozen_tags": (_integers, "facet tags that are kept as they are, comma-separated"),
-    "agreement": (_agreement, "move vertices until the stars agree: auto (in 3D: not), on or off"),
+    "agreement": (
+        _agreement,
+        "change the mesh until the stars agree: on, off, or auto (default): where the metric "
+        "varies slowly enough",
+    ),
     "until_consistent": (
         _until_consistent,
         "then insert points until every star is Delaunay in its own metric; "

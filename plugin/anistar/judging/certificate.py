@@ -237,6 +237,11 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
     ValueError
         If `threads` is below 1.
 
+    Notes
+    -----
+    What `remesh` has certified of its mesh is kept with it: for these very points, cells, facets
+    and metric the answer is there already.
+
     Examples
     --------
     >>> import numpy as np, anistar

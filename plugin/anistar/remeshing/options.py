@@ -73,11 +73,12 @@ class RemeshOptions:
         In 3D a ridge whose angle falls below goes on as long as it turns clearly more than the
         surface around it.
     agreement : bool or "auto"
-        Move vertices until the stars of the mesh agree, so that `certify` finds every star
-        Delaunay in its own metric. "auto" does so when the metric varies slowly enough from
-        vertex to vertex for that to succeed; ``report.agreement`` says what was decided. In 3D
-        the phase takes about as long as the remeshing itself: "auto" leaves it out, and True
-        runs it where the metric varies slowly enough.
+        Change the mesh until the metrics of neighbours agree about every facet, so that `certify`
+        finds every star Delaunay in its own metric; in 2D vertices are moved for it, in 3D facets
+        are swapped too. "auto" does so when the metric varies slowly enough from vertex to vertex
+        for that to succeed; ``report.agreement`` says what was decided. True does so in 2D
+        whatever the metric; in 3D under the same condition, with many times the effort where
+        facets resist.
     until_consistent : bool or "pure"
         After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
         star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.

@@ -49,16 +49,18 @@ class RemeshReport:
     long_edges : tuple of LongEdge
         Edges longer than 2 in the metric, the ten longest at most: ends, length and place.
     agreement : str
-        ``done``, ``off``, or ``skipped:`` and why; in 3D also what was left when it stalled.
+        ``done``, ``off``, or ``skipped:`` and why; in 3D also how many facets were left, some of
+        which the certificate may have mended since, and why the rounds ended.
     consistency : dict
         Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
         ``inconsistency``, ``boundary``), ``rounds``, ``stop_reason``, and
         ``ln_gamma_p90``: 10 % of the edges of the cells that still fail have a larger ln gamma
         between the metrics at their ends (0 when none fails). Compare it with `distortion`.
     simplex_ok, star_ok : float or None
-        Certified fractions of the cells and of the stars (see `certify`); None when the
-        agreement phase was off or a budget had stopped the run, and in 3D, where the
-        certificate takes longer than a pass: ask `certify`.
+        Certified fractions of the cells and of the stars of the mesh that came back (see
+        `certify`, which costs next to nothing then). None where neither agreement nor consistency
+        was asked for or a budget had stopped the run, and in 3D also where "auto" skipped
+        agreement.
     verdict : str
         That of the certificate in one line, with what agreement came to where stars fail; or why
         there is no certificate.
@@ -78,8 +80,9 @@ class RemeshReport:
         ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
         legs have equal lengths, and those without a common one. ``disagreeing_before`` and
         ``disagreeing_after`` count the facets about which the metrics of the vertices of their
-        two cells disagree, around the agreement phase. In 3D ``curved`` is 1 when some surface or
-        ridge is curved.
+        two cells disagree, around the agreement phase. ``star_failures`` are the cells that the
+        certificate refused after it, ``star_moves`` the moves that mended some of them. In 3D
+        ``curved`` is 1 when some surface or ridge is curved.
     seconds : dict of str to float
         Wall time of each phase.
     """
