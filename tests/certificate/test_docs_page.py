@@ -12,13 +12,23 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = (DOCS / "certificate.md").read_text()
 
 
+def module_of(name):
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # where dataclasses look
+    spec.loader.exec_module(module)
+    return module
+
+
 @pytest.fixture(scope="module")
 def script():
     pytest.importorskip("matplotlib")
-    spec = importlib.util.spec_from_file_location("pages", DOCS / "make_certificate_pictures.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return module_of("make_certificate_pictures")
+
+
+@pytest.fixture(scope="module")
+def tables():
+    return module_of("make_certificate_tables")
 
 
 def rows_of(header):
@@ -43,6 +53,33 @@ def test_a_star_is_checked_by_hand_as_the_page_does_it(tmp_path):
     assert done.stdout.startswith("certified: star_ok = 1 (")
     assert "is" in done.stdout
     assert re.search(r"vertex \d+ is 0\.\d+ from the centre", done.stdout)
+    (shown,) = re.findall(r"^```text\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
+    assert done.stdout.endswith(shown)
+
+
+def test_a_layer_that_is_better_resolved_has_more_certified_stars(tables):
+    coarse, finer = tables.resolve(0.025), tables.resolve(0.014)
+    assert coarse[-1].startswith("skipped: the metric varies too fast")
+    assert finer[-1].startswith("done")
+    assert float(coarse[3]) < 0.5 < 0.8 < float(finer[3])
+    shown = [float(row[0]) for row in rows_of("| largest $h / ")]
+    asked = [scale * tables.LARGEST_GROWTH / tables.THICKNESS for scale in tables.SCALES]
+    assert shown == pytest.approx(asked, abs=0.05)
+
+
+def test_the_tables_show_what_was_asked_for(tables, monkeypatch):
+    monkeypatch.setattr(tables, "TIMED", 1)
+    small = tables.Case(name="small", field=tables.turning(0.8, 0.1))
+    made = tables.outcomes(small)
+    shares = [one.certificate.star_ok.mean() for one in made]
+    assert shares[0] < 0.8 < shares[1] <= shares[2] <= shares[3] == 1
+    heads = (
+        "| metric | $\\ln\\gamma$: p90",
+        "| $\\ln\\gamma$ | below .1",
+        "| metric | vertices | cells",
+    )
+    for head, row in zip(heads, ("of_agreement", "of_classes", "of_consistency"), strict=True):
+        assert {len(cells) for cells in rows_of(head)} == {len(getattr(tables, row)(made[-1]))}
 
 
 def test_the_table_of_constants_solves_the_inequalities_of_the_theorem(script):
