@@ -261,8 +261,9 @@ def main() -> None:
     show([resolve(scale) for scale in SCALES])
     for case in CASES:
         made = outcomes(case)
+        asked = [one for one in made if one.options.agreement is True and not one.is_refused]
         show([of_agreement(one) for one in made if not one.options.until_consistent])
-        show([of_classes(one) for one in made if one.options.agreement is True])
+        show([of_classes(one) for one in asked])
         show([of_consistency(one) for one in made if one.options.until_consistent])
 
 
