@@ -141,7 +141,7 @@ CASES = (
     Case(name="slow turn", field=turning(0.4, 0.045)),
     Case(name="fast turn", field=turning(0.1, 0.045)),
     Case(name="round layer", field=round_layer(0.01)),
-    Case(name="the same, distortion .3", field=round_layer(0.01), max_distortion=0.3),
+    Case(name="round layer, graded", field=round_layer(0.01), max_distortion=0.3),
 )
 SCALES = (0.02, 0.014, 0.01, 0.007, 0.005)  # of the flat layer
 
