@@ -139,9 +139,9 @@ class Outcome:
 CASES = (
     Case(name="flat layer", field=flat_layer(0.008)),
     Case(name="slow turn", field=turning(0.4, 0.045)),
-    Case(name="fast turn", field=turning(0.1, 0.045)),
     Case(name="round layer", field=round_layer(0.01)),
     Case(name="round layer, graded", field=round_layer(0.01), max_distortion=0.3),
+    Case(name="fast turn", field=turning(0.1, 0.045)),
 )
 SCALES = (0.02, 0.014, 0.01, 0.007, 0.005)  # of the flat layer
 
