@@ -4,7 +4,7 @@ import cases
 import numpy as np
 import pytest
 import tetrahedra
-from meshes import cube
+from meshes import cube, square
 from scipy.spatial import Delaunay
 
 from anistar import _core_for_tests
@@ -203,3 +203,18 @@ def test_renewed_answers_are_those_found_from_scratch(d):
         far += (differs & stays).any()
     assert changed > 20
     assert far > 5
+
+
+@pytest.mark.parametrize("turn", range(3))
+@pytest.mark.parametrize("grid", [square(12), cube(3)], ids=["2D", "3D"])
+def test_boxes_whose_corners_lie_on_one_ball_but_for_the_last_bit(grid, turn):
+    """Rounded arithmetic tells nothing there: every answer hangs on its error bounds."""
+    d = grid.dim
+    rng = np.random.default_rng(turn)
+    Q = np.linalg.qr(rng.normal(size=(d, d)))[0]
+    Q[0] *= np.sign(np.linalg.det(Q))
+    mesh = Mesh(points=(grid.points + 0.3) @ Q.T, cells=grid.cells)
+    metric = np.tile(np.eye(d), (mesh.n_points, 1, 1))
+    found = certify(mesh, metric).delaunay
+    assert 0.1 < found.mean() < 0.9
+    assert np.array_equal(found, cell_by_cell(mesh, metric))
