@@ -58,9 +58,10 @@ class RemeshReport:
         between the metrics at their ends (0 when none fails). Compare it with `distortion`.
     simplex_ok, star_ok : float or None
         Certified fractions of the cells and of the stars of the mesh that came back (see
-        `certify`, which costs next to nothing then). None where neither agreement nor consistency
-        was asked for or a budget had stopped the run, and in 3D also where "auto" skipped
-        agreement.
+        `certify`, which costs next to nothing then); where `max_refinement` has limited the
+        metric, in the metric that this mesh could reach. None where neither agreement nor
+        consistency was asked for or a budget had stopped the run, and in 3D also where "auto"
+        skipped agreement.
     verdict : str
         That of the certificate in one line, with what agreement came to where stars fail; or why
         there is no certificate.

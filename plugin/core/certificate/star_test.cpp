@@ -21,7 +21,7 @@ constexpr double slack = 32 * detail::round_off;
 template <std::size_t d>
 bool StarTest<d>::decide(Index v, std::span<const HalfFacet> star,
                          std::span<std::uint8_t> passes, const GoesOn &goes_on) {
-  reach_ = 0;
+  reach_ = 1; // to what lies across the facets of the star
   answers_.assign(star.size(), Answer::doubtful);
   if (star.size() <= largest_star) {
     enter_star(v, star);

@@ -18,10 +18,10 @@ constexpr int n_directed = 3, directed_period = 3;
 constexpr int patience = 9, patience_with_few = 30;
 constexpr std::size_t few = 100;
 constexpr double least_reduction = .05;
-/// The radius of the trial places, round by round.
-constexpr double radii[] = {.3, .15, .07};
-/// Every so many rounds collapses and insertions are tried; where many facets fail not
-/// at once: they cost far more than a move, and vertices.
+/// The radius of the random places in the rounds between directed ones.
+constexpr double radii[] = {.15, .07};
+/// Every so many rounds, but for the directed ones, collapses and insertions are tried;
+/// where many facets fail not at once: they cost far more than a move, and vertices.
 constexpr int first_repair = 9, repair_period = 5;
 /// A facet that resists in these rounds makes a vertex wander, by this much: where
 /// metrics vary a lot the rest is stuck without.
@@ -30,8 +30,8 @@ constexpr double wandering_radius = .1;
 constexpr double fewest_trials = 30000;
 /// What a round takes for each failing facet, about.
 constexpr std::size_t directed_trials = 3, random_trials = 25;
-/// Re-insertion finds most of what it can in the first round: it is tried every so
-/// many.
+/// Re-insertion finds most of what it can in the first round: it is tried in every so
+/// many, but for the directed ones.
 constexpr int reinsertion_period = 4;
 /// Only stars with a cell that lost so much are polished.
 constexpr float clear_loss = .02F;
@@ -307,7 +307,7 @@ private:
   }
 
   void mend(HalfFacet h, int round, CounterRandom &random) {
-    const double radius = radii[round % 3];
+    const double radius = radii[round % directed_period - 1];
     // a swap that only exchanges failing facets could be taken back for ever
     if (repair_.swap(h, round % 2 == 0 ? FacetRepair::Demand::lower_cost
                                        : FacetRepair::Demand::fewer_failing)) {

@@ -14,7 +14,7 @@ struct AgreementState {
 
   FacetMargins margins;
   FarViolations far;
-  /// Vertices that found no directed step, and around which nothing has changed since.
+  /// Vertices that found no directed step, and whose stars have not changed since.
   PerVertex<std::uint8_t> is_stuck;
 
   /// For cells and vertices that were added to the mesh.

@@ -14,6 +14,8 @@ constexpr double good_progress = .9;
 /// From this round on random places are tried too, within this metric distance.
 constexpr int first_random = 1;
 constexpr double random_radius = .1;
+/// The monitor looks at the clock and at the user after so many failures.
+constexpr std::size_t failures_between_looks = 32;
 
 class VolumeMender {
 public:
@@ -28,15 +30,17 @@ public:
     std::vector<Index> failing = failing_cells(mesh_, known_.bits);
     if (double(failing.size()) > mended_part * double(mesh_.n_cells()))
       return counts;
-    for (int round = 0; round < max_rounds && !failing.empty(); ++round) {
-      const double fraction = double(round) / max_rounds;
+    bool is_progressing = true;
+    for (int round = 0; round < max_rounds && is_progressing && !failing.empty() &&
+                        run_.monitor.look(fraction_of(round));
+         ++round) {
       const std::size_t before = failing.size(), moved = move_at(failing, round);
-      renew(fraction);
+      renew(fraction_of(round));
       counts.moves += moved;
       failing = failing_cells(mesh_, known_.bits);
-      if (moved == 0 || double(failing.size()) > good_progress * double(before) ||
-          !run_.monitor.look(fraction))
-        break;
+      is_progressing =
+          round < first_random ||
+          (moved > 0 && double(failing.size()) <= good_progress * double(before));
     }
     counts.more_failing = view_.more_failing;
     return counts;
@@ -52,10 +56,20 @@ private:
   AgreementView view_;
   VolumeRelocation relocation_;
 
+  [[nodiscard]] static double fraction_of(int round) {
+    return double(round) / max_rounds;
+  }
+  [[nodiscard]] bool goes_on(std::size_t k, int round) const {
+    return k % failures_between_looks == 0 ? run_.monitor.look(fraction_of(round))
+                                           : !run_.is_stopped();
+  }
+
   /// One vertex after another of every violation moves until it is none.
   std::size_t move_at(const std::vector<Index> &failing, int round) {
     std::size_t moves = 0;
-    for (const FarViolation &violation : violations(failing)) {
+    const std::vector<FarViolation> found = violations(failing, round);
+    for (std::size_t n = 0; n < found.size() && goes_on(n, round); ++n) {
+      const FarViolation &violation = found[n];
       CounterRandom random(run_.seed, Stream::mend, violation[0], round);
       const auto first = static_cast<std::size_t>(5 * random.uniform());
       for (std::size_t k = 0; k < 5 && is_violated(violation); ++k) {
@@ -72,10 +86,11 @@ private:
   }
 
   /// What makes cells fail. That which no facet tells of is watched from now on.
-  [[nodiscard]] std::vector<FarViolation>
-  violations(const std::vector<Index> &failing) {
+  [[nodiscard]] std::vector<FarViolation> violations(const std::vector<Index> &failing,
+                                                     int round) {
     std::vector<FarViolation> found;
-    for (Index c : failing) {
+    for (std::size_t n = 0; n < failing.size() && goes_on(n, round); ++n) {
+      const Index c = failing[n];
       const Cell<3> &cell = mesh_.at(c);
       for (std::size_t k = 0; k < 4; ++k) {
         if ((known_.bits[c] >> k & 1) != 0)
@@ -85,8 +100,11 @@ private:
         if (w == none || (!found.empty() && found.back() == violation))
           continue;
         found.push_back(violation);
-        if (!is_neighbour(c, w))
-          state_.far.add(violation);
+        if (is_neighbour(c, w))
+          continue;
+        state_.far.add(violation);
+        for (Index v : violation)
+          state_.is_stuck[v] = 0;
       }
     }
     return found;
