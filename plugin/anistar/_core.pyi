@@ -405,15 +405,13 @@ class ConsistencyStop(enum.Enum):
 class AgreementOutcome(enum.Enum):
     off = 0
 
-    not_asked = 1
+    stopped_before = 1
 
-    stopped_before = 2
+    varies_too_fast = 2
 
-    varies_too_fast = 3
+    stopped = 3
 
-    stopped = 4
-
-    done = 5
+    done = 4
 
 class AgreementStop(enum.Enum):
     agreed = 0
