@@ -10,11 +10,10 @@ from .._core import ConsistencyStop, StopReason
 from ..base.arrays import Floats
 from ..meshes.mesh import Mesh
 from ..metric.laws.refinement import Refinement
-from .agreement import agreement_text
 from .bad_cells import BadCell, quality_bound, worst_cells
 from .fidelity import SurfaceDeviation, TagMeasure, shape_warnings
 from .long_edges import LONG_EDGE, LongEdge, longest_edges
-from .verdict import verdict_of
+from .verdict import agreement_text, verdict_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

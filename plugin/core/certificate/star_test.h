@@ -36,7 +36,7 @@ public:
   explicit StarTest(CertifiedMesh<d> mesh)
       : mesh_(mesh), cell_stamps_(mesh.cells.size(), 0), marks_(mesh.vertices.size()) {}
 
-  /// Asked now and then, also within a star.
+  /// Asked now and then, also between the cells of a star that are decided alone.
   using GoesOn = std::function<bool()>;
 
   /// @param star the cells at v, each as the half-facet opposite v
