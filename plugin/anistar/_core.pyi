@@ -81,6 +81,23 @@ class MetricMesh:
         A vertex that the cell reaches inside its circumsphere for one metric, -1 when it is Delaunay.
         """
 
+    def surface_delaunay(
+        self, *, bulges: NDArray[numpy.float64], threads: int
+    ) -> NDArray[numpy.uint8]:
+        """Per facet, bit k: it is in the surface star of its vertex k."""
+
+    def surface_violator(
+        self, *, bulges: NDArray[numpy.float64], facet: int, corner: int
+    ) -> tuple[int, float]:
+        """
+        A vertex that a facet reaches inside its surface ball for the metric of a corner, -1 when there is none, and the shift of that ball.
+        """
+
+def facet_bulges(mesh: MeshArrays, shape: DomainShape) -> NDArray[numpy.float64]:
+    """
+    Heights of the smooth shape over the middles of the edges opposite the vertices of every facet, (k, 3); in 2D over its middle, (k, 1).
+    """
+
 def intersect(
     first: NDArray[numpy.float64], second: NDArray[numpy.float64]
 ) -> NDArray[numpy.float64]:

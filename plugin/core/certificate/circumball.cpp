@@ -110,44 +110,98 @@ Frame<d, Number> frame_of(const Simplex<d> &simplex) {
   return f;
 }
 
-template <std::size_t d>
-Exact bilinear(const SymmetricTensor<d> &M, const std::array<Exact, d> &u,
-               const std::array<Exact, d> &v) {
-  Exact sum(0);
+template <std::size_t d, class Number>
+std::array<Number, d> product_of(const SymmetricTensor<d> &M,
+                                 const std::array<Number, d> &v) {
+  std::array<Number, d> out;
   for (std::size_t i = 0; i < d; ++i) {
-    Exact row(0);
-    for (std::size_t j = 0; j < d; ++j)
-      row = row + Exact(M(i, j)) * v[j];
-    sum = sum + row * u[i];
+    out[i] = Number(M(i, 0)) * v[0];
+    for (std::size_t j = 1; j < d; ++j)
+      out[i] = out[i] + Number(M(i, j)) * v[j];
   }
-  return sum;
+  return out;
+}
+
+template <std::size_t d, class Number>
+Number bilinear(const SymmetricTensor<d> &M, const std::array<Number, d> &u,
+                const std::array<Number, d> &v) {
+  return dot<d, Number>(product_of<d, Number>(M, v), u);
+}
+
+/// The product with the matrix of the cofactors of M.
+template <class Number>
+std::array<Number, 3> cofactor_product(const SymmetricTensor<3> &M,
+                                       const std::array<Number, 3> &v) {
+  std::array<std::array<Number, 3>, 3> rows;
+  for (std::size_t i = 0; i < 3; ++i)
+    rows[i] = {Number(M(i, 0)), Number(M(i, 1)), Number(M(i, 2))};
+  return {dot<3, Number>(cross_product(rows[1], rows[2]), v),
+          dot<3, Number>(cross_product(rows[2], rows[0]), v),
+          dot<3, Number>(cross_product(rows[0], rows[1]), v)};
+}
+
+/// The solution 2 g = gradient / determinant of the equations of a ball.
+template <std::size_t d, class Number> struct Solution {
+  Number determinant;
+  std::array<Number, d> gradient;
+};
+
+template <std::size_t d>
+Solution<d, Exact> solution_of(const SymmetricTensor<d> &M, const Simplex<d> &simplex) {
+  const Frame<d, Exact> f = frame_of<d, Exact>(simplex);
+  Solution<d, Exact> out{f.determinant, {}};
+  out.gradient.fill(Exact(0));
+  for (std::size_t k = 0; k < d; ++k) {
+    const Exact square = bilinear<d, Exact>(M, f.edges[k], f.edges[k]);
+    for (std::size_t i = 0; i < d; ++i)
+      out.gradient[i] = out.gradient[i] + square * f.cofactors[k][i];
+  }
+  return out;
+}
+
+/// See surface_facet.h for the equations. In the plane of a facet with edges u, w and
+/// the normal n = u x w, the centre of its ball obeys 2 g.N = 0 with N = cof(M) n.
+template <std::size_t d, class Number>
+Solution<d, Number> solution_of(const SymmetricTensor<d> &M,
+                                const SurfaceFacet<d> &facet) {
+  const auto u = difference<d, Number>(facet.corners[1], facet.corners[0]);
+  Solution<d, Number> out;
+  if constexpr (d == 2) {
+    out = {Number(1.), product_of<2, Number>(M, u)};
+    const std::array<Number, 2> normal{-u[1], u[0]};
+    for (std::size_t i = 0; i < d; ++i)
+      out.gradient[i] = out.gradient[i] + Number(facet.shift) * normal[i];
+  } else {
+    const auto w = difference<d, Number>(facet.corners[2], facet.corners[0]);
+    const auto n = cross_product(u, w), N = cofactor_product(M, n);
+    const auto across_u = cross_product(w, N), across_w = cross_product(N, u);
+    const Number uu = bilinear<3, Number>(M, u, u), ww = bilinear<3, Number>(M, w, w);
+    out.determinant = dot<3, Number>(N, n);
+    const Number along = Number(facet.shift) * out.determinant;
+    for (std::size_t i = 0; i < d; ++i)
+      out.gradient[i] = uu * across_u[i] + ww * across_w[i] + along * n[i];
+  }
+  return out;
 }
 
 } // namespace
 
-/// Everything times the determinant of the simplex, which is positive.
+/// Everything times the determinant of its equations, which is positive.
 template <std::size_t d> struct ExactBall {
   using Row = std::array<Exact, d>;
   const SymmetricTensor<d> &M;
-  const Simplex<d> &simplex;
+  const Vector<d> &origin;
   Exact determinant;
   Row gradient;
 
-  ExactBall(const SymmetricTensor<d> &metric, const Simplex<d> &s)
-      : M(metric), simplex(s) {
-    require_finite(M.entries);
-    const Frame<d, Exact> f = frame_of<d, Exact>(s);
-    determinant = f.determinant;
-    gradient.fill(Exact(0));
-    for (std::size_t k = 0; k < d; ++k) {
-      const Exact square = bilinear<d>(M, f.edges[k], f.edges[k]);
-      for (std::size_t i = 0; i < d; ++i)
-        gradient[i] = gradient[i] + square * f.cofactors[k][i];
-    }
-  }
+  ExactBall(const SymmetricTensor<d> &metric, const Vector<d> &first,
+            Solution<d, Exact> &&solution)
+      : M(metric), origin(first), determinant(std::move(solution.determinant)),
+        gradient(std::move(solution.gradient)) {}
+
   [[nodiscard]] Exact power(const Vector<d> &x) const {
-    const Row y = difference<d, Exact>(x, simplex[0]);
-    return determinant * bilinear<d>(M, y, y) - dot<d, Exact>(gradient, y);
+    const Row y = difference<d, Exact>(x, origin);
+    return determinant * bilinear<d, Exact>(M, y, y) - dot<d, Exact>(gradient, y);
   }
   /// Of the product of the gradient of the power at x and q - x.
   [[nodiscard]] CGAL::Sign slope_sign(const Vector<d> &x, const Vector<d> &q) {
@@ -174,7 +228,7 @@ private:
     for (const auto &[point, known] : normals_)
       if (point == &x)
         return known;
-    const Row y = difference<d, Exact>(x, simplex[0]);
+    const Row y = difference<d, Exact>(x, origin);
     Row found;
     for (std::size_t i = 0; i < d; ++i) {
       Exact half(0);
@@ -195,7 +249,7 @@ template <std::size_t d>
 bool exactly_meets_segment(const ExactBall<d> &ball, const Vector<d> &p,
                            const Vector<d> &q) {
   const auto u = difference<d, Exact>(q, p);
-  const Exact alpha = ball.determinant * bilinear<d>(ball.M, u, u);
+  const Exact alpha = ball.determinant * bilinear<d, Exact>(ball.M, u, u);
   const Exact gamma = ball.power(p);
   const Exact beta = ball.power(q) - gamma - alpha;
   return CGAL::sign(beta) < 0 && CGAL::sign(alpha + alpha + beta) > 0 &&
@@ -223,9 +277,9 @@ bool exactly_meets_inside(const ExactBall<3> &ball,
                           const std::array<const Vector<3> *, 3> &facet) {
   const auto u = difference<3, Exact>(*facet[1], *facet[0]);
   const auto v = difference<3, Exact>(*facet[2], *facet[0]);
-  const Exact a = ball.determinant * bilinear<3>(ball.M, u, u);
-  const Exact b = ball.determinant * bilinear<3>(ball.M, u, v);
-  const Exact c = ball.determinant * bilinear<3>(ball.M, v, v);
+  const Exact a = ball.determinant * bilinear<3, Exact>(ball.M, u, u);
+  const Exact b = ball.determinant * bilinear<3, Exact>(ball.M, u, v);
+  const Exact c = ball.determinant * bilinear<3, Exact>(ball.M, v, v);
   const Exact g = ball.power(*facet[0]);
   const auto minimum = plane_minimum<Exact>(a, b, c, ball.power(*facet[1]) - g - a,
                                             ball.power(*facet[2]) - g - c, g);
@@ -238,7 +292,7 @@ bool exactly_meets_inside(const ExactBall<3> &ball,
 
 template <std::size_t d>
 Circumball<d>::Circumball(const SymmetricTensor<d> &M, const Simplex<d> &simplex)
-    : M_(M), simplex_(simplex) {
+    : M_(M), through_(&simplex), origin_(simplex[0]) {
   const Frame<d, double> f = frame_of<d, double>(simplex);
   Vector<d> sum = Vector<d>::Zero(), size = Vector<d>::Zero();
   double determinant_size = 0;
@@ -270,16 +324,42 @@ Circumball<d>::Circumball(const SymmetricTensor<d> &M, const Simplex<d> &simplex
     gradient_error_.setConstant(std::numeric_limits<double>::infinity());
 }
 
+template <std::size_t d>
+Circumball<d>::Circumball(const SymmetricTensor<d> &M, const SurfaceFacet<d> &facet)
+    : M_(M), through_(&facet), origin_(facet.corners[0]) {
+  const auto [determinant, gradient] = solution_of<d, Bounded>(M, facet);
+  const double least = determinant.value - determinant.error;
+  for (std::size_t i = 0; i < d; ++i) {
+    const double quotient = gradient[i].value / determinant.value;
+    gradient_[static_cast<int>(i)] = quotient;
+    gradient_error_[static_cast<int>(i)] =
+        least > detail::underflow_guard
+            ? (1 + bound) *
+                      (gradient[i].error + std::abs(quotient) * determinant.error) /
+                      least +
+                  bound * std::abs(quotient)
+            : std::numeric_limits<double>::infinity();
+  }
+}
+
 template <std::size_t d> Circumball<d>::~Circumball() = default;
 
 template <std::size_t d> ExactBall<d> &Circumball<d>::exact() const {
-  if (!exact_)
-    exact_ = std::make_unique<ExactBall<d>>(M_, simplex_);
+  if (!exact_) {
+    require_finite(M_.entries);
+    const auto solve = [&](const auto *through) {
+      if constexpr (std::is_same_v<decltype(through), const Simplex<d> *>)
+        return solution_of<d>(M_, *through);
+      else
+        return solution_of<d, Exact>(M_, *through);
+    };
+    exact_ = std::make_unique<ExactBall<d>>(M_, origin_, std::visit(solve, through_));
+  }
   return *exact_;
 }
 
 template <std::size_t d> Bounded Circumball<d>::power(const Vector<d> &x) const {
-  const Vector<d> y = x - simplex_[0], size = y.cwiseAbs();
+  const Vector<d> y = x - origin_, size = y.cwiseAbs();
   return {quadratic<d>(M_, y) - gradient_.dot(y),
           bound * double(d) * diagonal_square<d>(M_, y) + gradient_error_.dot(size) +
               bound * gradient_.cwiseAbs().dot(size) + Bounded::underflow};
@@ -291,7 +371,8 @@ Side Circumball<d>::side(const Vector<d> &x, const Bounded &power) const {
     return Side::outside;
   if (power.is_negative())
     return Side::inside;
-  if (are_corners_of_box<d>(M_, simplex_, x))
+  if (const auto *simplex = std::get_if<const Simplex<d> *>(&through_);
+      simplex && are_corners_of_box<d>(M_, **simplex, x))
     return Side::boundary;
   const Exact value = exact().power(x);
   return static_cast<Side>(-static_cast<int>(CGAL::sign(value)));
@@ -342,7 +423,7 @@ bool Circumball<d>::leaves_inwards(const std::array<const Vector<d> *, d> &facet
 /// The product of the gradient of the power at p and q - p.
 template <std::size_t d>
 Bounded Circumball<d>::slope(const Vector<d> &p, const Vector<d> &q) const {
-  const Vector<d> y = p - simplex_[0], u = q - p, length = u.cwiseAbs();
+  const Vector<d> y = p - origin_, u = q - p, length = u.cwiseAbs();
   const double product_size = double(d) * std::sqrt(diagonal_square<d>(M_, u)) *
                               std::sqrt(diagonal_square<d>(M_, y));
   return {(2 * product<d>(M_, y) - gradient_).dot(u),

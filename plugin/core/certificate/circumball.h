@@ -1,16 +1,18 @@
 #pragma once
-// The circumscribed ellipsoid of a simplex in a metric, compared exactly with vertices
-// and facets of a mesh.
+// The ellipsoid through the vertices of a cell, or of a facet and centred on a surface,
+// in a metric, compared exactly with vertices and facets of a mesh.
 //
 // With y the offset from the first vertex, the power of a point is y^T M y - 2 g.y,
 // where g makes it vanish at all vertices: negative inside, convex, and a polynomial in
-// the stored doubles once multiplied by the determinant of the edge vectors.
+// the stored doubles once multiplied by the determinant of the equations of g.
 
 #include "base/bounded.h"
 #include "base/predicates.h"
+#include "certificate/surface/surface_facet.h"
 
 #include <array>
 #include <memory>
+#include <variant>
 
 namespace anistar {
 
@@ -21,6 +23,8 @@ template <std::size_t d> class Circumball {
 public:
   /// @pre the simplex is positively oriented and outlives this object, as M does.
   Circumball(const SymmetricTensor<d> &M, const Simplex<d> &simplex);
+  /// The M-surface ball of a facet. @pre the facet outlives this object, as M does.
+  Circumball(const SymmetricTensor<d> &M, const SurfaceFacet<d> &facet);
   ~Circumball();
   Circumball(const Circumball &) = delete;
   Circumball &operator=(const Circumball &) = delete;
@@ -37,9 +41,10 @@ public:
 
 private:
   const SymmetricTensor<d> &M_;
-  const Simplex<d> &simplex_;
+  std::variant<const Simplex<d> *, const SurfaceFacet<d> *> through_;
+  const Vector<d> &origin_;  ///< the first vertex
   Vector<d> gradient_;       ///< 2 g
-  Vector<d> gradient_error_; ///< of each component; infinite for a flat simplex
+  Vector<d> gradient_error_; ///< of each component; infinite where it is too flat
 
   mutable std::unique_ptr<ExactBall<d>> exact_; ///< made at the first doubt
 

@@ -55,12 +55,10 @@ bool DelaunayTest<d>::meets(const Circumball<d> &ball, const Facet<d> &facet) co
 
 template <std::size_t d>
 Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
-  const auto cell_at = [&](Index c) -> const Cell<d> & { return mesh_.cells[c]; };
   begin_walk();
-  reach_ = 0;
   Simplex<d> simplex;
   for (std::size_t k = 0; k <= d; ++k) {
-    const std::size_t v = cell_at(cell)[k];
+    const std::size_t v = mesh_.cells[cell][k];
     simplex[k] = mesh_.vertices[v].x;
     known_[v] = {epoch_, {}};
   }
@@ -69,6 +67,26 @@ Index DelaunayTest<d>::violator(Index cell, const SymmetricTensor<d> &M) {
   for (std::size_t i = 0; i <= d; ++i)
     if (const HalfFacet beyond = door(cell, i); beyond.exists())
       enter(beyond, 1);
+  return walk(ball);
+}
+
+template <std::size_t d>
+Index DelaunayTest<d>::violator(HalfFacet facet, const SymmetricTensor<d> &M,
+                                const SurfaceFacet<d> &seen) {
+  begin_walk();
+  const std::size_t c = facet.cell();
+  for (Index v : facet_of<d>(mesh_.cells[c], facet.facet()))
+    known_[v] = {epoch_, {}};
+  enter(facet, 0);
+  if (const HalfFacet beyond = mesh_.neighbours[c][facet.facet()]; beyond.exists())
+    enter(beyond, 0);
+  return walk(Circumball<d>(M, seen));
+}
+
+/// From the facets that have been entered to a vertex inside, or to the end.
+template <std::size_t d> Index DelaunayTest<d>::walk(const Circumball<d> &ball) {
+  const auto cell_at = [&](Index c) -> const Cell<d> & { return mesh_.cells[c]; };
+  reach_ = 0;
   for (std::size_t k = 0; k < front_.size(); ++k) {
     const auto [entry, depth] = front_[k];
     reach_ = std::max(reach_, depth);

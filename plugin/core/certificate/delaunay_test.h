@@ -1,6 +1,6 @@
 #pragma once
-// Whether one simplex is Delaunay in one metric, exactly, by the walk of the
-// definition.
+// Whether one simplex is Delaunay in one metric, or one facet in the surface star of a
+// vertex, exactly, by the walk of the definition.
 
 #include "certificate/certified_mesh.h"
 #include "certificate/circumball.h"
@@ -18,7 +18,11 @@ public:
   /// The first vertex found inside the M-circumball of `cell` that it can reach, `none`
   /// when it is Delaunay.
   [[nodiscard]] Index violator(Index cell, const SymmetricTensor<d> &M);
-  /// How many cells away the last call of violator() looked.
+  /// The same for the M-surface ball of a facet, which reaches from the cells on both
+  /// sides of it. @param seen the facet as the vertex with the metric M sees it
+  [[nodiscard]] Index violator(HalfFacet facet, const SymmetricTensor<d> &M,
+                               const SurfaceFacet<d> &seen);
+  /// How many cells away the last of these calls looked.
   [[nodiscard]] std::uint8_t reach() const { return reach_; }
   /// And at how many.
   [[nodiscard]] std::size_t n_visits() const { return front_.size(); }
@@ -45,6 +49,7 @@ private:
   std::uint8_t reach_ = 0;
 
   void begin_walk();
+  [[nodiscard]] Index walk(const Circumball<d> &ball);
   /// The far side of a facet that is no wall, if the walk has not been there.
   [[nodiscard]] HalfFacet door(Index from, std::size_t i) const;
   void enter(HalfFacet door, std::uint8_t depth);

@@ -1,6 +1,7 @@
 #include "certificate/walled_mesh.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace anistar {
 
@@ -10,8 +11,11 @@ namespace {
 template <std::size_t d> class KnownFacets {
 public:
   KnownFacets(std::span<const Facet<d>> facets, std::size_t n_points)
-      : facets_(facets.begin(), facets.end()), is_on_one_(n_points, false) {
-    for (Facet<d> &facet : facets_) {
+      : is_on_one_(n_points, false) {
+    facets_.reserve(facets.size());
+    for (const Facet<d> &given : facets) {
+      facets_.emplace_back(given, static_cast<Index>(facets_.size()));
+      Facet<d> &facet = facets_.back().first;
       std::sort(facet.begin(), facet.end());
       for (Index v : facet)
         is_on_one_[v] = true;
@@ -20,20 +24,19 @@ public:
   }
 
   [[nodiscard]] std::size_t size() const { return facets_.size(); }
-  /// Its place among them, their number where it is none of them.
-  [[nodiscard]] std::size_t find(Facet<d> facet) const {
+  /// Its place among them, `none` where it is none of them.
+  [[nodiscard]] Index find(Facet<d> facet) const {
     for (Index v : facet)
       if (!is_on_one_[v])
-        return size();
+        return none;
     std::sort(facet.begin(), facet.end());
-    const auto at = std::lower_bound(facets_.begin(), facets_.end(), facet);
-    return at != facets_.end() && *at == facet
-               ? static_cast<std::size_t>(at - facets_.begin())
-               : size();
+    const auto at =
+        std::lower_bound(facets_.begin(), facets_.end(), std::pair(facet, Index{0}));
+    return at != facets_.end() && at->first == facet ? at->second : none;
   }
 
 private:
-  std::vector<Facet<d>> facets_;
+  std::vector<std::pair<Facet<d>, Index>> facets_; ///< sorted, with their places
   std::vector<bool> is_on_one_;
 };
 
@@ -47,7 +50,7 @@ std::vector<std::array<Index, d + 1>> walls(std::span<const Cell<d>> cells,
   std::vector<std::array<Index, d + 1>> out(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (std::size_t i = 0; i <= d; ++i)
-      out[c][i] = known.find(facet_of<d>(cells[c], i)) < known.size() ? 0 : none;
+      out[c][i] = known.find(facet_of<d>(cells[c], i));
   return out;
 }
 
@@ -58,7 +61,7 @@ bool has_interfaces(std::span<const Cell<d>> cells, std::span<const Facet<d>> fa
   std::vector<bool> has_cell(known.size(), false);
   for (const Cell<d> &cell : cells)
     for (std::size_t i = 0; i <= d; ++i)
-      if (const std::size_t k = known.find(facet_of<d>(cell, i)); k < known.size()) {
+      if (const Index k = known.find(facet_of<d>(cell, i)); k != none) {
         if (has_cell[k])
           return true;
         has_cell[k] = true;

@@ -5,7 +5,8 @@
 
 namespace anistar {
 
-/// For every facet of every cell 0 when it is one of `facets`, else `none`.
+/// For every facet of every cell its place among `facets`, `none` when it is none of
+/// them.
 /// @param facets boundary and constrained facets of the mesh, in any orientation.
 template <std::size_t d>
 [[nodiscard]] std::vector<std::array<Index, d + 1>>

@@ -1,11 +1,14 @@
 #include "bindings/bind.h"
-#include "bindings/support/geometry.h"
+#include "bindings/remesh/geometry_inputs.h"
 #include "bindings/support/interrupt.h"
 #include "certificate/circumspheres.h"
 #include "certificate/delaunay_test.h"
 #include "certificate/sharp_corners.h"
+#include "certificate/surface/surface_stars.h"
 #include "certificate/vertex_distortion.h"
 #include "certificate/walled_mesh.h"
+#include "plane/geometry/facet_bulges.h"
+#include "surface/facet_bulges.h"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -145,6 +148,70 @@ Index violator(const MetricMesh &mesh, Index cell, const Array2<double> &metric)
   });
 }
 
+/// The heights of facet_bulge.h, (k, 1) or (k, 3).
+template <std::size_t d> constexpr std::size_t n_heights = FacetBulge<d>().size();
+
+Doubles facet_bulges_of(const MeshArrays &mesh, const DomainShape &shape) {
+  const auto found = [&](auto bulges) {
+    constexpr std::size_t n = std::tuple_size_v<typename decltype(bulges)::value_type>;
+    const std::size_t k = bulges.size();
+    std::vector<double> heights;
+    heights.reserve(n * k);
+    for (const auto &bulge : bulges)
+      heights.insert(heights.end(), bulge.begin(), bulge.end());
+    return owned(std::move(heights), {k, n});
+  };
+  if (mesh.dimension() == 2)
+    return found([&] {
+      nb::gil_scoped_release release;
+      return facet_bulges(curves_of(mesh, shape));
+    }());
+  return found([&] {
+    nb::gil_scoped_release release;
+    return facet_bulges(surfaces_of(mesh, shape));
+  }());
+}
+
+template <std::size_t d>
+SurfaceFacets<d> surface_of(const MetricMesh &mesh, const Array2<double> &bulges) {
+  if (bulges.shape(0) != mesh.facets.shape(0) || bulges.shape(1) != n_heights<d>)
+    throw std::invalid_argument("bulges have the wrong shape");
+  const auto *first = reinterpret_cast<const FacetBulge<d> *>(bulges.data());
+  return {facets_of<d>(mesh.facets), {first, bulges.shape(0)}};
+}
+
+Bytes surface_delaunay(const MetricMesh &mesh, const Array2<double> &bulges,
+                       int threads) {
+  return row(in_its_dimension(mesh, [&](auto d) {
+    nb::gil_scoped_release release;
+    const CellsAndWalls<d> given(mesh);
+    return surface_bits<d>(given.walled.view(), surface_of<d>(mesh, bulges), threads,
+                           look_on);
+  }));
+}
+
+/// A vertex inside the surface ball of a facet, or -1; the shift of the ball.
+std::pair<Index, double> surface_violator(const MetricMesh &mesh,
+                                          const Array2<double> &bulges, Index facet,
+                                          std::size_t corner) {
+  if (facet < 0 || std::cmp_greater_equal(facet, mesh.facets.shape(0)) ||
+      corner >= mesh.dimension())
+    throw std::invalid_argument("there is no such corner of a facet");
+  return in_its_dimension(mesh, [&](auto d) {
+    const CellsAndWalls<d> given(mesh);
+    const CertifiedMesh<d> walled = given.walled.view();
+    const SurfaceFacets<d> surface = surface_of<d>(mesh, bulges);
+    const std::size_t f = facet;
+    const SurfaceFacet<d> seen = surface_facet<d>(walled, surface, f, corner);
+    const HalfFacet at = cells_at_facets<d>(walled, surface.facets.size())[f];
+    if (!at.exists())
+      throw std::invalid_argument("facet " + std::to_string(f) + " is of no cell");
+    const std::size_t v = surface.facets[f][corner];
+    return std::pair(DelaunayTest<d>(walled).violator(at, walled.vertices[v].M, seen),
+                     seen.shift);
+  });
+}
+
 void construct(MetricMesh *self, const Array2<double> &points,
                const Array2<Index> &cells, const Array2<Index> &facets,
                const Array3<double> &metric) {
@@ -178,7 +245,17 @@ void bind_certify(nb::module_ &module) {
       .def("violator", &violator, nb::kw_only(), nb::arg("cell"),
            nb::arg("metric").noconvert(),
            "A vertex that the cell reaches inside its circumsphere for one metric, "
-           "-1 when it is Delaunay.");
+           "-1 when it is Delaunay.")
+      .def("surface_delaunay", &surface_delaunay, nb::kw_only(),
+           nb::arg("bulges").noconvert(), nb::arg("threads"),
+           "Per facet, bit k: it is in the surface star of its vertex k.")
+      .def("surface_violator", &surface_violator, nb::kw_only(),
+           nb::arg("bulges").noconvert(), nb::arg("facet"), nb::arg("corner"),
+           "A vertex that a facet reaches inside its surface ball for the metric of a "
+           "corner, -1 when there is none, and the shift of that ball.");
+  module.def("facet_bulges", &facet_bulges_of, nb::arg("mesh"), nb::arg("shape"),
+             "Heights of the smooth shape over the middles of the edges opposite the "
+             "vertices of every facet, (k, 3); in 2D over its middle, (k, 1).");
 }
 
 } // namespace anistar::bindings
