@@ -3,7 +3,8 @@
 from . import metric
 from .base.errors import FormatError, MeshingError
 from .formats import read, write
-from .judging.certificate import Certificate, SimplexOfStar, certify, explain_star
+from .judging.certificate import Certificate, certify
+from .judging.explanation import SimplexOfStar, explain_star
 from .loops.adapt import Adapted, AdaptOptions, adapt
 from .loops.keeping import KeepOptions, needs_adaptation
 from .loops.loop import Loop, LoopError, Step, adapt_loop

@@ -8,7 +8,8 @@ import pytest
 from cases import FIGURES, convex_case, metric_of, walled_case
 from meshes import square
 
-from anistar.judging.certificate import certify, circumcentre, explain_star
+from anistar.judging.certificate import certify
+from anistar.judging.explanation import circumcentre, explain_star
 from anistar.meshes.mesh import Mesh
 from anistar.meshes.validation import validate
 from anistar.metric import MetricError

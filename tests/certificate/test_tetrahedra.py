@@ -25,7 +25,8 @@ from tetrahedra import (
 )
 
 from anistar import _core_for_tests
-from anistar.judging.certificate import certify, circumcentre, explain_star
+from anistar.judging.certificate import certify
+from anistar.judging.explanation import circumcentre, explain_star
 from anistar.meshes.mesh import Mesh
 from anistar.meshes.validation import validate
 

@@ -5,7 +5,8 @@ import pytest
 from cases import walled_case
 from oracle import Walls, in_circle, vertices_inside
 
-from anistar.judging.certificate import certify, explain_star
+from anistar.judging.certificate import certify
+from anistar.judging.explanation import explain_star
 
 
 @pytest.mark.parametrize("seeds", [range(k, k + 35) for k in range(2000, 2070, 35)])
