@@ -4,7 +4,7 @@ from . import metric
 from .base.errors import FormatError, MeshingError
 from .formats import read, write
 from .judging.certificate import Certificate, certify
-from .judging.explanation import SimplexOfStar, explain_star
+from .judging.explanation import FacetOfStar, SimplexOfStar, explain_star, explain_surface_star
 from .loops.adapt import Adapted, AdaptOptions, adapt
 from .loops.keeping import KeepOptions, needs_adaptation
 from .loops.loop import Loop, LoopError, Step, adapt_loop
@@ -33,6 +33,7 @@ __all__ = [
     "Adapted",
     "Certificate",
     "ConsistencyOptions",
+    "FacetOfStar",
     "Field",
     "FormatError",
     "KeepOptions",
@@ -58,6 +59,7 @@ __all__ = [
     "certify",
     "convergence_study",
     "explain_star",
+    "explain_surface_star",
     "metric",
     "needs_adaptation",
     "read",

@@ -9,6 +9,7 @@ from anistar.meshes.mesh import Mesh
 #: What a certificate says, by name.
 FIGURES = (
     *("simplex_ok", "star_ok", "exempt", "verdict", "delaunay"),
+    *("surface_ok", "surface_star_ok", "in_surface_star"),
     *("distortion", "radius_edge", "sliverity"),
     *("stars_without_interfaces", "restricted_v1", "restricted_v2"),
 )

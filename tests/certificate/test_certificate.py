@@ -35,7 +35,7 @@ def test_a_grid_of_squares_is_certified_in_the_identity():
     assert certificate.is_certified
     assert certificate.verdict == (
         "certified: star_ok = 1 (25 of 25), simplex_ok = 1 (32 of 32), "
-        "0 vertices exempt at sharp corners"
+        "0 vertices exempt at sharp corners; surface_star_ok = 1 (16 of 16)"
     )
     assert certificate.radius_edge == pytest.approx(np.full(32, np.sqrt(0.5)))
     assert certificate.distortion == pytest.approx(np.ones(25))

@@ -13,11 +13,18 @@ from meshes import certified_anew, cube, square, two_region_cube, two_regions, u
 from remesh3d.domains import uniform
 
 from anistar import AdaptOptions, MetricOptions, RemeshOptions, adapt, certify, remesh
-from anistar.judging.metric_mesh import MetricMesh, keep_proof, kept_proof
+from anistar.judging.metric_mesh import MetricMesh, SurfaceMesh, keep_proof, kept_proof
+from anistar.judging.skin import Skin
+
+SMOOTH = Skin()
 
 
-def is_kept(mesh, metric):
-    return kept_proof(mesh, MetricMesh.of(mesh, metric)) is not None
+def surface_mesh(mesh, metric, skin=SMOOTH):
+    return SurfaceMesh.of(mesh, MetricMesh.of(mesh, metric), skin)
+
+
+def is_kept(mesh, metric, skin=SMOOTH):
+    return kept_proof(mesh, surface_mesh(mesh, metric, skin)) is not None
 
 
 def stretched(mesh, h, ratio=4.0):
@@ -105,12 +112,14 @@ def test_one_other_number_anywhere_and_nothing_is_known(made):
     metric = done.metric.copy()
     metric[7, 0, 0] = np.nextafter(metric[7, 0, 0], np.inf)
     assert not is_kept(done.mesh, metric)
+    assert not is_kept(done.mesh, done.metric, Skin(ridge_angle=44.0))
+    assert not is_kept_for_the_arrays(done, facet_tags=done.mesh.facet_tags + 1)
     assert is_kept_for_the_arrays(done)
     assert is_kept(done.mesh, done.metric)
 
 
 def is_kept_for_the_arrays(done, **changes):
-    judged = MetricMesh.of(unproved(done.mesh, **changes), done.metric)
+    judged = surface_mesh(unproved(done.mesh, **changes), done.metric)
     return kept_proof(done.mesh, judged) is not None
 
 
@@ -119,7 +128,7 @@ def test_a_mesh_that_is_changed_behind_its_back_is_judged_as_it_is(made):
     done = made()
     # a mesh of its own, as that of the other tests must stay
     mesh = unproved(done.mesh, points=done.mesh.points.copy())
-    keep_proof(mesh, MetricMesh.of(mesh, done.metric), bits_of(done))
+    keep_proof(mesh, surface_mesh(mesh, done.metric), proof_of(done))
     assert certify(mesh, done.metric).star_ok.all()
     inside = np.setdiff1d(np.arange(mesh.n_points), mesh.facets)[0]
     points = mesh.points.base
@@ -131,8 +140,8 @@ def test_a_mesh_that_is_changed_behind_its_back_is_judged_as_it_is(made):
     assert_same(changed, certify(unproved(mesh), done.metric))
 
 
-def bits_of(done):
-    return kept_proof(done.mesh, MetricMesh.of(done.mesh, done.metric))
+def proof_of(done):
+    return kept_proof(done.mesh, surface_mesh(done.mesh, done.metric))
 
 
 @BOTH

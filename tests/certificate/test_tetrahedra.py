@@ -339,7 +339,7 @@ def test_the_verdict_and_the_report_of_a_cube():
     certificate = certify(mesh, np.tile(np.eye(3), (mesh.n_points, 1, 1)))
     assert certificate.verdict == (
         "certified: star_ok = 1 (27 of 27), simplex_ok = 1 (48 of 48), "
-        "0 vertices exempt at sharp corners"
+        "0 vertices exempt at sharp corners; surface_star_ok = 1 (26 of 26)"
     )
     report = json.loads(json.dumps(certificate.as_dict(), allow_nan=False))
     assert report["radius_edge_max"] == pytest.approx(np.sqrt(3) / 2)

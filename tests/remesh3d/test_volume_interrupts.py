@@ -18,7 +18,8 @@ from remesh3d.test_until_consistent_3d import growing, hopeless
 
 from anistar import ConsistencyOptions, RemeshOptions, remesh, validate
 from anistar.judging.certificate import certificate_of
-from anistar.judging.metric_mesh import MetricMesh
+from anistar.judging.metric_mesh import MetricMesh, Proof, SurfaceMesh
+from anistar.judging.skin import Skin
 
 PHASES = ["background", "size", "shape", "agreement", "certificate", "consistency", "report"]
 
@@ -230,7 +231,9 @@ def long_grid():
 def test_signals_are_heard_while_a_figure_of_a_certificate_is_found(figure, threads):
     mesh = long_grid()
     judged = MetricMesh.of(mesh, np.tile(np.eye(3), (mesh.n_points, 1, 1)))
-    certificate = certificate_of(judged, np.full(mesh.n_cells, 15, np.uint8), threads=threads)
+    proof = Proof(np.full(mesh.n_cells, 15, np.uint8), np.full(mesh.n_facets, 7, np.uint8))
+    surface = SurfaceMesh.of(mesh, judged, Skin())
+    certificate = certificate_of(surface, proof, threads=threads)
     heard = []
 
     def listen(*_):

@@ -16,7 +16,7 @@ from .certificate import Certificate
 from .quality import mean_ratios, metric_lengths
 
 #: Where the labels of a certificate live.
-CERTIFICATE_ARRAYS = {"simplex_ok": "cells", "star_ok": "points"}
+CERTIFICATE_ARRAYS = {"simplex_ok": "cells", "star_ok": "points", "surface_star_ok": "points"}
 
 
 def cell_arrays(mesh: Mesh, M: Floats, certificate: Certificate | None = None) -> dict[str, Field]:
@@ -61,7 +61,9 @@ def cell_arrays(mesh: Mesh, M: Floats, certificate: Certificate | None = None) -
 
 
 def certificate_arrays(certificate: Certificate | None) -> dict[str, Field]:
-    """Return ``simplex_ok`` of the cells and ``star_ok`` of the points as labels, 1 or 0.
+    """Return what is certified, labels 1 or 0.
+
+    ``simplex_ok`` of the cells, ``star_ok`` and ``surface_star_ok`` of the points.
 
     Nothing where there is no certificate.
     """
@@ -70,6 +72,7 @@ def certificate_arrays(certificate: Certificate | None) -> dict[str, Field]:
     return {
         "simplex_ok": Field(certificate.simplex_ok, "cells", "label"),
         "star_ok": Field(certificate.star_ok, "points", "label"),
+        "surface_star_ok": Field(certificate.surface_star_ok, "points", "label"),
     }
 
 

@@ -16,7 +16,8 @@ from ..base.core_errors import meshing_errors
 from ..base.report import as_builtin
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
-from .metric_mesh import Bytes, MetricMesh, keep_proof, kept_proof
+from .metric_mesh import Bytes, MetricMesh, Proof, SurfaceMesh, keep_proof, kept_proof
+from .skin import Shape, Skin
 
 Count = tuple[int, int]
 """How many, of how many."""
@@ -26,9 +27,17 @@ Count = tuple[int, int]
 class _Judged:
     """What a certificate was made of, and what was found first."""
 
-    mesh: MetricMesh
-    bits: Bytes
+    surface: SurfaceMesh
+    proof: Proof
     threads: int
+
+    @property
+    def mesh(self) -> MetricMesh:
+        return self.surface.mesh
+
+    @property
+    def bits(self) -> Bytes:
+        return self.proof.delaunay
 
     def delaunay(self) -> Bools:
         corners = np.arange(self.mesh.cells.shape[1], dtype=np.uint8)
@@ -43,6 +52,15 @@ class _Judged:
         ok[self.mesh.cells[failing][~self.delaunay()[failing]]] = False
         return ok
 
+    def in_surface_star(self) -> Bools:
+        corners = np.arange(self.mesh.facets.shape[1], dtype=np.uint8)
+        return (self.proof.surface[:, None] >> corners & 1).astype(bool)
+
+    def surface_star_ok(self) -> Bools:
+        ok = np.ones(len(self.mesh.points), dtype=bool)
+        ok[self.mesh.facets[~self.in_surface_star()]] = False
+        return ok
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Certificate:
@@ -51,6 +69,14 @@ class Certificate:
     A simplex is *Delaunay in a metric* when no vertex that it can reach lies strictly inside its
     circumscribed ellipsoid in that metric. It reaches the vertices of the cells that the open
     ellipsoid meets, walking from cell to cell and never across a boundary or constrained facet.
+
+    A facet of the boundary or of an interface is in the *surface star* of its vertex v when it
+    reaches no vertex strictly inside its surface ball: the ellipsoid in the metric of v through
+    its vertices, centred on the surface ([1], section 7.1). It reaches from the cells on both
+    sides of it. On a planar patch the surface is the plane of the facet. A curved one is taken
+    for the quadratic over that plane which vanishes at the vertices and is as high over the
+    middle of each edge as the circle that turns with the surface normals at its ends; the shift
+    of the centre to it is rounded once, and the ellipsoid with this shift is decided exactly.
 
     Attributes
     ----------
@@ -64,9 +90,19 @@ class Certificate:
         walls with that dihedral angle, or a vertex at which the walls leave less than the solid
         angle of a cone with that aperture.
     verdict : str
-        One line with `simplex_ok` and `star_ok` by name, and the number of exempt vertices.
+        One line with `simplex_ok`, `star_ok` and `surface_star_ok` by name, and the number of
+        exempt vertices.
     delaunay : (m, d + 1) bool
         Whether a simplex is Delaunay in the metric of each of its vertices.
+    surface_ok : (k,) bool
+        Facets that are in the surface stars of all their vertices, in the order of
+        ``mesh.facets``: certified.
+    surface_star_ok : (n,) bool
+        Vertices all of whose facets are in the surface star of the vertex: the boundary and the
+        interfaces of the mesh are there what the vertex finds by itself. True at vertices of no
+        facet.
+    in_surface_star : (k, d) bool
+        Whether a facet is in the surface star of each of its vertices.
 
     Notes
     -----
@@ -85,6 +121,9 @@ class Certificate:
     exempt: Bools
     verdict: str
     delaunay: Bools
+    surface_ok: Bools
+    surface_star_ok: Bools
+    in_surface_star: Bools
     judged: InitVar[_Judged]
 
     def __post_init__(self, judged: _Judged) -> None:
@@ -117,7 +156,10 @@ class Certificate:
         core, threads = self._of.mesh.core(), self._of.threads
         with meshing_errors():
             bits = core.delaunay_across_interfaces(threads=threads)
-        star_ok = self._of.star_ok() if bits is None else replace(self._of, bits=bits).star_ok()
+        open_to_all = self._of
+        if bits is not None:
+            open_to_all = replace(open_to_all, proof=replace(self._of.proof, delaunay=bits))
+        star_ok = open_to_all.star_ok()
         return int(star_ok.sum()), len(star_ok)
 
     @cached_property
@@ -151,14 +193,21 @@ class Certificate:
 
     @property
     def is_certified(self) -> bool:
-        """Whether every star is certified or exempt."""
+        """Whether every star is certified or exempt; surface stars are judged apart."""
         return bool((self.star_ok | self.exempt).all())
+
+    @property
+    def surface_stars(self) -> Count:
+        """Vertices of facets whose surface star is certified, and of how many."""
+        on_facets = np.unique(self._of.mesh.facets)
+        return int(self.surface_star_ok[on_facets].sum()), len(on_facets)
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins: the fractions, counts and extremes, without the arrays.
 
-        ``simplex_ok`` and ``star_ok`` are fractions, ``n_exempt`` counts vertices,
-        ``distortion_max``, ``radius_edge_max`` and ``sliverity_min`` are extremes; the pairs are
+        ``simplex_ok``, ``star_ok``, ``surface_ok`` and ``surface_star_ok`` are fractions, the last
+        one of the vertices of facets; ``n_exempt`` counts vertices, ``distortion_max``,
+        ``radius_edge_max`` and ``sliverity_min`` are extremes; the pairs are
         ``[how many, of how many]``.
         """
         return {
@@ -168,6 +217,10 @@ class Certificate:
             "star_ok": float(self.star_ok.mean()),
             "simplices": [int(self.simplex_ok.sum()), len(self.simplex_ok)],
             "stars": [int(self.star_ok.sum()), len(self.star_ok)],
+            "surface_ok": share_of(int(self.surface_ok.sum()), len(self.surface_ok)),
+            "surface_star_ok": share_of(*self.surface_stars),
+            "surface_facets": [int(self.surface_ok.sum()), len(self.surface_ok)],
+            "surface_stars": list(self.surface_stars),
             "n_exempt": int(self.exempt.sum()),
             "distortion_max": as_builtin(self.distortion.max()),
             "radius_edge_max": as_builtin(self.radius_edge.max()),
@@ -178,8 +231,15 @@ class Certificate:
         }
 
 
-def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
-    """Test every simplex and every star of a mesh, in exact arithmetic.
+def certify(
+    mesh: Mesh,
+    M: ArrayLike,
+    *,
+    threads: int = 1,
+    shape: Shape = "smooth",
+    ridge_angle: float = 45.0,
+) -> Certificate:
+    """Test every simplex, every star and every facet of a mesh, in exact arithmetic.
 
     Parameters
     ----------
@@ -189,6 +249,11 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
         Metric at the points, in 1 / length**2.
     threads : int
         Threads to use; the certificate does not depend on it.
+    shape : "smooth" or "polyhedron"
+        What the facets of the mesh mean to `surface_ok`, as in `RemeshOptions`: with
+        "polyhedron" every facet is judged by its own plane.
+    ridge_angle : float
+        Degrees, as in `RemeshOptions`.
 
     Returns
     -------
@@ -199,7 +264,7 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
     MetricError
         If a tensor is not symmetric positive definite; the point is named.
     ValueError
-        If `threads` is below 1.
+        If `threads` is below 1, or `shape` or `ridge_angle` is none.
 
     Notes
     -----
@@ -213,42 +278,62 @@ def certify(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
     >>> anistar.certify(mesh, np.tile([[1.0, 0.5], [0.5, 1.0]], (4, 1, 1))).simplex_ok
     array([False, False])
     """
-    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     threads = operator.index(threads)
     if threads < 1:
         raise ValueError(f"threads must be at least 1, got {threads}")
-    judged = MetricMesh.of(mesh, metric)
-    bits = kept_proof(mesh, judged)
-    if bits is None:
-        bits = judged.delaunay(threads)
-    return certificate_of(judged, bits, threads=threads)
+    judged = _surface_mesh(mesh, M, Skin(shape=shape, ridge_angle=ridge_angle))
+    proof = kept_proof(mesh, judged)
+    if proof is None:
+        proof = Proof(judged.mesh.delaunay(threads), judged.delaunay(threads))
+    return certificate_of(judged, proof, threads=threads)
 
 
-def certify_and_keep(mesh: Mesh, M: ArrayLike, *, threads: int = 1) -> Certificate:
+def certify_and_keep(
+    mesh: Mesh, M: ArrayLike, skin: Skin | None = None, *, threads: int = 1
+) -> Certificate:
     """Return what `certify` does, which costs next to nothing from then on (see `keep_proof`)."""
-    certificate = certify(mesh, M, threads=threads)
-    keep_proof(mesh, certificate._of.mesh, certificate._of.bits)
+    skin = skin or Skin()
+    certificate = certify(mesh, M, threads=threads, shape=skin.shape, ridge_angle=skin.ridge_angle)
+    keep_certificate(mesh, certificate)
     return certificate
+
+
+def keep_certificate(mesh: Mesh, certificate: Certificate) -> None:
+    """Keep what a certificate says of a mesh for as long as the mesh lives."""
+    keep_proof(mesh, certificate._of.surface, certificate._of.proof)
 
 
 def known_certificate(mesh: Mesh, M: ArrayLike) -> Certificate | None:
     """Return what `certify` does if it is known already, else None."""
-    judged = MetricMesh.of(mesh, check_metric(M, n_points=mesh.n_points, dim=mesh.dim))
-    bits = kept_proof(mesh, judged)
-    return None if bits is None else certificate_of(judged, bits)
+    judged = _surface_mesh(mesh, M, Skin())
+    proof = kept_proof(mesh, judged)
+    return None if proof is None else certificate_of(judged, proof)
 
 
-def certificate_of(mesh: MetricMesh, delaunay: Bytes, *, threads: int = 1) -> Certificate:
-    """Return the certificate of a mesh of which `MetricMesh.delaunay` is known."""
-    judged = _Judged(mesh, delaunay, threads)
+def _surface_mesh(mesh: Mesh, M: ArrayLike, skin: Skin) -> SurfaceMesh:
+    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
+    return SurfaceMesh.of(mesh, MetricMesh.of(mesh, metric), skin)
+
+
+def certificate_of(mesh: SurfaceMesh, proof: Proof, *, threads: int = 1) -> Certificate:
+    """Return the certificate of a mesh of which everything is decided."""
+    judged = _Judged(mesh, proof, threads)
     star_ok = judged.star_ok()
-    flags = {
-        "simplex_ok": judged.simplex_ok(),
-        "star_ok": star_ok,
-        "exempt": _exempt(mesh, star_ok),
-    }
+    exempt = _exempt(mesh.mesh, star_ok)
+    simplex_ok = judged.simplex_ok()
+    in_surface_star = judged.in_surface_star()
+    surface_star_ok = judged.surface_star_ok()
+    on_facets = np.unique(mesh.mesh.facets)
     return Certificate(
-        **flags, verdict=_verdict(**flags), delaunay=judged.delaunay(), judged=judged
+        simplex_ok=simplex_ok,
+        star_ok=star_ok,
+        exempt=exempt,
+        verdict=_verdict(simplex_ok, star_ok, exempt, surface_star_ok[on_facets]),
+        delaunay=judged.delaunay(),
+        surface_ok=in_surface_star.all(axis=1),
+        surface_star_ok=surface_star_ok,
+        in_surface_star=in_surface_star,
+        judged=judged,
     )
 
 
@@ -259,7 +344,7 @@ def _exempt(mesh: MetricMesh, star_ok: Bools) -> Bools:
         return mesh.core().exempt(star_ok=star_ok.view(np.uint8)).astype(bool)
 
 
-def _verdict(simplex_ok: Bools, star_ok: Bools, exempt: Bools) -> str:
+def _verdict(simplex_ok: Bools, star_ok: Bools, exempt: Bools, surface_star_ok: Bools) -> str:
     if star_ok.all():
         judgement = "certified"
     elif (star_ok | exempt).all():
@@ -268,12 +353,18 @@ def _verdict(simplex_ok: Bools, star_ok: Bools, exempt: Bools) -> str:
         judgement = "not certified"
     return (
         f"{judgement}: star_ok = {_fraction(star_ok)}, simplex_ok = {_fraction(simplex_ok)}, "
-        f"{int(exempt.sum())} vertices exempt at sharp corners"
+        f"{int(exempt.sum())} vertices exempt at sharp corners; "
+        f"surface_star_ok = {_fraction(surface_star_ok)}"
     )
 
 
 def _fraction(ok: Bools) -> str:
-    return f"{rounded_down(float(ok.mean())):g} ({int(ok.sum())} of {len(ok)})"
+    return f"{rounded_down(share_of(int(ok.sum()), len(ok))):g} ({int(ok.sum())} of {len(ok)})"
+
+
+def share_of(part: int, whole: int) -> float:
+    """Return how large a part is, 1 of nothing."""
+    return part / whole if whole else 1.0
 
 
 def rounded_down(share: float) -> float:

@@ -14,7 +14,7 @@ from ..base.arrays import Floats
 from ..base.errors import MeshingError
 from ..base.report import attributes
 from ..base.telling import telling_once
-from ..judging.certificate import certify_and_keep
+from ..judging.certificate import certify_and_keep, share_of
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric import Ledger, MetricOptions, from_fields
@@ -141,6 +141,8 @@ class AdaptReport:
     simplex_ok, star_ok : float or None
         Certified fractions of the cells and of the stars of the new mesh, see `certify`. Where
         the mesher finished without a certificate, it is made here; not where agreement is off.
+    surface_star_ok : float or None
+        The same of the surface stars, those of the vertices of facets.
     verdict : str
         The certificate in one line, or why there is none.
     """
@@ -153,6 +155,7 @@ class AdaptReport:
     seconds: float
     simplex_ok: float | None
     star_ok: float | None
+    surface_star_ok: float | None
     verdict: str
 
     def as_dict(self) -> dict[str, Any]:
@@ -256,6 +259,7 @@ def adapt_to(
         seconds=time.perf_counter() - started,
         simplex_ok=stars.simplex_ok,
         star_ok=stars.star_ok,
+        surface_star_ok=stars.surface_star_ok,
         verdict=stars.verdict,
     )
     return Adapted(done.mesh, carried.fields, done.metric, report)
@@ -266,6 +270,7 @@ class _Stars(NamedTuple):
 
     simplex_ok: float | None
     star_ok: float | None
+    surface_star_ok: float | None
     verdict: str
 
 
@@ -274,11 +279,12 @@ def _judged(done: Remeshed, options: RemeshOptions) -> _Stars:
     report = done.report
     is_unjudged = report.star_ok is None and report.stop_reason == "finished"
     if not is_unjudged or options.agreement is False:
-        return _Stars(report.simplex_ok, report.star_ok, report.verdict)
-    certificate = certify_and_keep(done.mesh, done.metric, threads=options.threads)
+        return _Stars(report.simplex_ok, report.star_ok, report.surface_star_ok, report.verdict)
+    certificate = certify_and_keep(done.mesh, done.metric, options.skin(), threads=options.threads)
     return _Stars(
         float(certificate.simplex_ok.mean()),
         float(certificate.star_ok.mean()),
+        share_of(*certificate.surface_stars),
         verdict_line(certificate, report.agreement),
     )
 

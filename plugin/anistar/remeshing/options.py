@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from .. import _core
+from ..judging.skin import Shape, Skin
 from ..metric.laws.refinement import check_refinement
 from .consistency_options import ConsistencyOptions
 
@@ -105,7 +106,7 @@ class RemeshOptions:
     max_memory: float | None = None
     max_refinement: float | Literal["auto"] | None = "auto"
     frozen_tags: Sequence[int] = ()
-    shape: Literal["smooth", "polyhedron"] = "smooth"
+    shape: Shape = "smooth"
     ridge_angle: float = 45.0
     hausdorff_number: float | None = None
     agreement: bool | Literal["auto"] = "auto"
@@ -130,10 +131,7 @@ class RemeshOptions:
             raise ValueError(f"max_memory must be positive, got {self.max_memory}")
         if self.max_refinement is not None:
             check_refinement("max_refinement", self.max_refinement)
-        if self.shape not in ("smooth", "polyhedron"):
-            raise ValueError(f'shape must be "smooth" or "polyhedron", got {self.shape!r}')
-        if not 0 < self.ridge_angle <= 180:
-            raise ValueError(f"ridge_angle must be in (0, 180] degrees, got {self.ridge_angle}")
+        self.skin()  # checks it
         if self.hausdorff_number is not None and not 0 < self.hausdorff_number <= 1:
             raise ValueError(f"hausdorff_number must be in (0, 1], got {self.hausdorff_number}")
         if not (isinstance(self.agreement, bool) or self.agreement == "auto"):
@@ -147,11 +145,13 @@ class RemeshOptions:
         if not 1 <= self.threads <= 256:
             raise ValueError(f"threads must be in [1, 256], got {self.threads}")
 
+    def skin(self) -> Skin:
+        """Return what facets are taken for."""
+        return Skin(shape=self.shape, ridge_angle=self.ridge_angle)
+
     def as_shape(self) -> _core.DomainShape:
         """Return what the core is told about the facets of the geometry."""
-        shape = _core.DomainShape()
-        shape.kind = _core.ShapeKind[self.shape]
-        shape.ridge_angle = self.ridge_angle
+        shape = self.skin().as_core()
         shape.frozen_tags = np.array(self.frozen_tags, dtype=np.int32).tolist()
         return shape
 

@@ -13,7 +13,7 @@ from ..base.arguments import require
 from ..base.arrays import Floats, Ints
 from ..base.core_errors import meshing_errors
 from ..base.telling import tell
-from ..judging.metric_mesh import Bytes, MetricMesh, keep_proof
+from ..judging.certificate import keep_certificate
 from ..meshes.mesh import Mesh
 from ..meshes.mesh_arrays import mesh_arrays
 from ..metric import check_metric
@@ -25,6 +25,7 @@ from .project import Project, pointwise
 from .ramp import approached, carried
 from .report import RemeshReport, report_of
 from .size_range import check_sizes
+from .verdict import certificate_for
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,13 +106,14 @@ def remesh(
     ramp = approached(mesh, metric, scale, options.max_refinement)
     check_demand(mesh, ramp.metric, scale, options)
     made = _made(mesh, ramp.metric, geometry, project, options, scale)
-    proof = _proof_at_scale(made, scale)
+    is_exact = _is_exact_at(made, scale)
     reached = made.metric
     reached *= scale * scale
     new = _new_mesh(made.mesh, mesh, geometry, scale)
     metric = carried(mesh, check_metric(M), new) if ramp.is_limited.any() else reached
-    if proof is not None and metric is reached:
-        keep_proof(new, MetricMesh.of(new, reached), proof)
+    certificate = certificate_for(made, new, reached, options)
+    if certificate is not None and is_exact and metric is reached:
+        keep_certificate(new, certificate)
     is_curved = mesh.dim == 2 or made.counts["curved"] > 0
     shape = smooth_shape(geometry, options) if is_curved else None
     report = report_of(
@@ -119,6 +121,7 @@ def remesh(
         new,
         reached,
         ramp=ramp,
+        certificate=certificate,
         tags=tag_measures(geometry, shape, new, has_ridges=len(mesh.edges) > 0),
         deviations=surface_deviations(geometry, shape, new) if shape and not project else (),
     )
@@ -198,15 +201,14 @@ def _made(
         )
 
 
-def _proof_at_scale(made: _core.RemeshResult, scale: float) -> Bytes | None:
-    """Return what the core has proved of the mesh it made, if it holds in other units.
+def _is_exact_at(made: _core.RemeshResult, scale: float) -> bool:
+    """Return whether what the core has proved of the mesh it made holds in other units.
 
     It does where the powers of two that take coordinates and metric there round nothing.
     """
-    is_exact = _keeps_digits(made.mesh.points, 1.0 / scale) and _keeps_digits(
+    return _keeps_digits(made.mesh.points, 1.0 / scale) and _keeps_digits(
         made.metric, scale * scale
     )
-    return made.delaunay if is_exact else None
 
 
 def _keeps_digits(values: Floats, power_of_two: float) -> bool:

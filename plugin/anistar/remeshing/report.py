@@ -8,6 +8,7 @@ from typing import Any
 from .. import _core
 from .._core import ConsistencyStop, StopReason
 from ..base.arrays import Floats
+from ..judging.certificate import Certificate, share_of
 from ..meshes.mesh import Mesh
 from ..metric.laws.refinement import Refinement
 from .bad_cells import BadCell, quality_bound, worst_cells
@@ -61,6 +62,9 @@ class RemeshReport:
         metric, in the metric that this mesh could reach. None where neither agreement nor
         consistency was asked for or a budget had stopped the run, and in 3D also where "auto"
         skipped agreement.
+    surface_star_ok : float or None
+        Certified fraction of the surface stars, those of the vertices of facets; None where
+        `star_ok` is.
     verdict : str
         That of the certificate in one line, with what agreement came to where stars fail; or why
         there is no certificate.
@@ -101,6 +105,7 @@ class RemeshReport:
     consistency: dict[str, Any]
     simplex_ok: float | None
     star_ok: float | None
+    surface_star_ok: float | None
     verdict: str
     distortion: dict[str, float]
     tags: tuple[TagMeasure, ...]
@@ -126,6 +131,7 @@ def report_of(
     metric: Floats,
     *,
     ramp: Refinement,
+    certificate: Certificate | None,
     tags: tuple[TagMeasure, ...],
     deviations: tuple[SurfaceDeviation, ...],
 ) -> RemeshReport:
@@ -140,6 +146,8 @@ def report_of(
         At its points, within the limit of refinement.
     ramp : Refinement
         That limit.
+    certificate : Certificate or None
+        Of the mesh in it.
     tags : tuple of TagMeasure
     deviations : tuple of SurfaceDeviation
     """
@@ -168,7 +176,8 @@ def report_of(
         consistency={**made.consistency, "stop_reason": _consistency_stop(made)},
         simplex_ok=made.certified.simplex_ok if made.certified else None,
         star_ok=made.certified.star_ok if made.certified else None,
-        verdict=verdict_of(made, new, metric, agreement),
+        surface_star_ok=share_of(*certificate.surface_stars) if certificate else None,
+        verdict=verdict_of(made, certificate, agreement),
         distortion=made.distortion,
         tags=tags,
         deviations=deviations,

@@ -6,8 +6,9 @@ from .. import _core
 from .._core import AgreementOutcome, AgreementReport, AgreementStop
 from ..base.arrays import Floats
 from ..judging.certificate import Certificate, certificate_of
-from ..judging.metric_mesh import MetricMesh
+from ..judging.metric_mesh import MetricMesh, Proof, SurfaceMesh
 from ..meshes.mesh import Mesh
+from .options import RemeshOptions
 
 #: Why its rounds ended.
 STOPS = {
@@ -50,8 +51,10 @@ def _left(found: AgreementReport) -> str:
     return f"{STOPS[found.stop]} with {found.disagreeing} facets left"
 
 
-def verdict_of(made: _core.RemeshResult, new: Mesh, metric: Floats, agreement: str) -> str:
-    """Return what `RemeshReport.verdict` says.
+def certificate_for(
+    made: _core.RemeshResult, new: Mesh, metric: Floats, options: RemeshOptions
+) -> Certificate | None:
+    """Return the certificate of the mesh that was made, if the core has judged it.
 
     Parameters
     ----------
@@ -60,11 +63,27 @@ def verdict_of(made: _core.RemeshResult, new: Mesh, metric: Floats, agreement: s
         The mesh in it, in the coordinates of the caller.
     metric : (n, d, d) float64
         At its points.
+    options : RemeshOptions
+    """
+    if made.delaunay is None:
+        return None
+    judged = SurfaceMesh.of(new, MetricMesh.of(new, metric), options.skin())
+    proof = Proof(made.delaunay, judged.delaunay(options.threads))
+    return certificate_of(judged, proof, threads=options.threads)
+
+
+def verdict_of(made: _core.RemeshResult, certificate: Certificate | None, agreement: str) -> str:
+    """Return what `RemeshReport.verdict` says.
+
+    Parameters
+    ----------
+    made : RemeshResult
+    certificate : Certificate or None
+        Of the mesh in it.
     agreement : str
         What became of agreement.
     """
-    if made.delaunay is not None:
-        certificate = certificate_of(MetricMesh.of(new, metric), made.delaunay)
+    if certificate is not None:
         return verdict_line(certificate, agreement)
     if made.agreement.outcome in (AgreementOutcome.stopped, AgreementOutcome.done):
         return f"no certificate: stopped by {made.stop_reason.name}"
