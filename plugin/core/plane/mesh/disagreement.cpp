@@ -1,12 +1,19 @@
 #include "plane/mesh/disagreement.h"
 
+#include "certificate/circumball.h"
+
 namespace anistar {
 
 bool disagrees(const Triangulation<2> &mesh, HalfFacet edge) {
   const HalfFacet other = mesh.opposite(edge);
-  if (!other.exists() || mesh.constraint(edge) != none)
-    return false;
   const auto [a, b] = mesh.facet(edge);
+  if (mesh.constraint(edge) != none) {
+    const auto is_inside = [&](HalfFacet side) {
+      return side.exists() && encroaches_on_surface(mesh.vertex(a), mesh.vertex(b),
+                                                    mesh.vertex(mesh.apex(side)));
+    };
+    return is_inside(edge) || is_inside(other);
+  }
   return metrics_disagree(mesh.vertex(a), mesh.vertex(b), mesh.vertex(mesh.apex(edge)),
                           mesh.vertex(mesh.apex(other)));
 }
@@ -36,6 +43,29 @@ bool metrics_disagree(const Vertex<2> &a, const Vertex<2> &b, const Vertex<2> &c
     if (det > bound)
       return true;
     if (det >= -bound && in_metric_sphere(v->M, a.x, b.x, c.x, e.x) == Side::inside)
+      return true;
+  }
+  return false;
+}
+
+bool encroaches_on_surface(const Vertex<2> &a, const Vertex<2> &b, const Vertex<2> &c) {
+  const Vector<2> to_a = a.x - c.x, to_b = b.x - c.x;
+  for (const Vertex<2> *v : {&a, &b}) {
+    const auto &M = v->M.entries;
+    const double xx = to_a[0] * to_b[0], yy = to_a[1] * to_b[1], xy = to_a[0] * to_b[1],
+                 yx = to_a[1] * to_b[0];
+    const double power = M[0] * xx + M[1] * (xy + yx) + M[2] * yy;
+    const double size = M[0] * std::abs(xx) +
+                        std::abs(M[1]) * (std::abs(xy) + std::abs(yx)) +
+                        M[2] * std::abs(yy);
+    const double bound = detail::sphere_bound_2 * size;
+    if (power > bound && size > detail::underflow_guard)
+      continue;
+    if (power < -bound && size > detail::underflow_guard)
+      return true;
+    const SurfaceFacet<2> edge{{a.x, b.x}};
+    const Circumball<2> ball(v->M, edge);
+    if (ball.side(c.x, ball.power(c.x)) == Side::inside)
       return true;
   }
   return false;

@@ -80,6 +80,9 @@ public:
       visit(h);
       visit(HalfFacet(h.cell(), (h.facet() + 2) % 3));
     }
+    const HalfFacet last = star_.back(), end(last.cell(), (last.facet() + 1) % 3);
+    if (!mesh_.opposite(end).exists()) // on the boundary the star is open
+      visit(end);
   }
 
 private:

@@ -128,8 +128,9 @@ private:
           for (std::size_t i = 0; i < 3; ++i) {
             const HalfFacet edge(static_cast<Index>(c), i),
                 other = mesh_.opposite(edge);
-            if (mesh_.is_alive(edge.cell()) && other.exists() &&
-                other.cell() > edge.cell() && disagrees(mesh_, edge))
+            if (mesh_.is_alive(edge.cell()) &&
+                (!other.exists() || other.cell() > edge.cell()) &&
+                disagrees(mesh_, edge))
               add(edge);
           }
         });
@@ -198,7 +199,7 @@ private:
       if (!disagrees(mesh_, e))
         return;
       const HalfFacet other = mesh_.opposite(e);
-      const HalfFacet first = other.cell() < e.cell() ? other : e;
+      const HalfFacet first = other.exists() && other.cell() < e.cell() ? other : e;
       left.emplace_back(first.cell(), first.facet());
     };
     for (Index v : work_.take()) {
@@ -206,6 +207,7 @@ private:
       for (HalfFacet h : star) {
         count(h);
         count(HalfFacet(h.cell(), (h.facet() + 2) % 3));
+        count(HalfFacet(h.cell(), (h.facet() + 1) % 3));
       }
     }
     std::sort(left.begin(), left.end());

@@ -232,9 +232,8 @@ void Relocator::list_around(Index v) {
 /// edge is listed without looking.
 void Relocator::list_if_disagreeing(HalfFacet edge) {
   const HalfFacet other = mesh_.opposite(edge);
-  if (!other.exists() || mesh_.constraint(edge) != none)
-    return;
-  if (!range_.contains(mesh_.at(other.cell())) || disagrees(mesh_, edge))
+  if ((other.exists() && !range_.contains(mesh_.at(other.cell()))) ||
+      disagrees(mesh_, edge))
     for_quad(mesh_, edge, [&](Index v) { listed_.push_back(v); });
 }
 

@@ -57,12 +57,14 @@ private:
   void list_if_disagreeing(HalfFacet edge);
 };
 
-/// Calls list(v) for the four vertices of the two cells at an edge.
+/// Calls list(v) for the vertices of the cells at an edge.
 template <class List>
 void for_quad(const Triangulation<2> &mesh, HalfFacet edge, List list) {
   const auto [a, b] = mesh.facet(edge);
-  for (Index v : {a, b, mesh.apex(edge), mesh.apex(mesh.opposite(edge))})
+  for (Index v : {a, b, mesh.apex(edge)})
     list(v);
+  if (const HalfFacet other = mesh.opposite(edge); other.exists())
+    list(mesh.apex(other));
 }
 
 } // namespace anistar
