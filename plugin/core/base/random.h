@@ -64,6 +64,10 @@ public:
     state_ += golden;
     return static_cast<double>(mix(state_) >> 11) * 0x1p-53;
   }
+  /// Uniform in 0 .. n - 1.
+  [[nodiscard]] std::size_t below(std::size_t n) {
+    return static_cast<std::size_t>(static_cast<double>(n) * uniform());
+  }
 
 private:
   static constexpr std::uint64_t golden = 0x9e3779b97f4a7c15u;

@@ -70,6 +70,9 @@ public:
   /// visit({a, b, c, d, e}) for the facets abc of the proposal that are no walls: those
   /// of its cells and those that it brings together, between the cell abcd and e.
   template <class Visit> void for_new_facets(Visit visit) const;
+  /// visit({a, b, c}, patch, {d, e}) for its walls: the facet abc of the cells with the
+  /// apexes d and e, which is none on the boundary.
+  template <class Visit> void for_new_walls(Visit visit) const;
   /// visit(quality, cell) for its cells, which have numbers once it is committed.
   template <class Visit> void for_new_cells(Visit visit) const;
 
@@ -122,6 +125,8 @@ private:
   std::vector<std::uint8_t> joined_; ///< local vertices that keep their edge to it
   bool has_walls_ = false;
 
+  /// visit({a, b, c}, patch, {d, e}) for all facets of the proposal.
+  template <class Visit> void for_new(Visit visit) const;
   [[nodiscard]] bool is_lost(const std::array<Index, 3> &facet) const;
   [[nodiscard]] bool is_lost(Index u, Index w) const;
   [[nodiscard]] bool collect(std::span<const Index> cells,
@@ -165,23 +170,43 @@ template <class Visit> void CavityOperator::for_new_cells(Visit visit) const {
 }
 
 template <class Visit> void CavityOperator::for_new_facets(Visit visit) const {
+  for_new([&](const Facet<3> &t, Index patch, std::array<Index, 2> apexes) {
+    if (patch == none)
+      visit(std::array<Index, 5>{t[0], t[1], t[2], apexes[0], apexes[1]});
+  });
+}
+
+template <class Visit> void CavityOperator::for_new_walls(Visit visit) const {
+  for_new([&](const Facet<3> &t, Index patch, std::array<Index, 2> apexes) {
+    if (patch != none)
+      visit(t, patch, apexes);
+  });
+}
+
+/// What is below the new cells, and what lies between two of them or between one and a
+/// cell at the apex that stays.
+template <class Visit> void CavityOperator::for_new(Visit visit) const {
+  const Triangulation<3> &mesh = volume_.mesh;
   for (const Outer &outer : outers_)
-    if (outer.kind == Kind::base && outer.constraint == none && outer.beyond.exists())
-      visit(std::array<Index, 5>{outer.v[0], outer.v[1], outer.v[2], apex_,
-                                 volume_.mesh.apex(outer.beyond)});
-  const auto has_cell = [](const Outer &outer) {
+    if (outer.kind == Kind::base)
+      visit(outer.v, outer.constraint,
+            {apex_, outer.beyond.exists() ? mesh.apex(outer.beyond) : none});
+  const auto has_cell = [&](const Port &port) {
+    const Outer &outer = outers_[port.outer];
     return outer.kind == Kind::base || outer.beyond.exists();
   };
   for (const Pair &pair : pairs_) {
-    const Outer &outer = outers_[pair.one.outer], &other = outers_[pair.other.outer];
-    if (pair.constraint != none || !has_cell(outer) || !has_cell(other))
-      continue;
+    // one of them has a cell, or the facet would have none
+    const bool is_first = has_cell(pair.one);
+    const Port &port = is_first ? pair.one : pair.other,
+               &beyond = is_first ? pair.other : pair.one;
+    const Outer &outer = outers_[port.outer];
     const Facet<3> t =
         outer.kind == Kind::base
-            ? facet_of<3>({outer.v[0], outer.v[1], outer.v[2], apex_}, pair.one.slot)
-            : volume_.mesh.facet(outer.beyond);
-    visit(std::array<Index, 5>{t[0], t[1], t[2], vertex_off(pair.one),
-                               vertex_off(pair.other)});
+            ? facet_of<3>({outer.v[0], outer.v[1], outer.v[2], apex_}, port.slot)
+            : mesh.facet(outer.beyond);
+    visit(t, pair.constraint,
+          {vertex_off(port), has_cell(beyond) ? vertex_off(beyond) : none});
   }
 }
 

@@ -124,7 +124,7 @@ class VolumeAgreement {
 public:
   VolumeAgreement(Volume &volume, const Run &run)
       : volume_(volume), mesh_(volume.mesh), run_(run),
-        state_(volume.mesh), view_{volume, state_, run.hausdorff.surface},
+        state_(volume, run.threads), view_{volume, state_, run.hausdorff.surface},
         relocation_(view_), repair_(view_, run.monitor) {}
 
   AgreementCounts make(const AgreementEffort &effort) {
@@ -170,15 +170,18 @@ private:
     for (std::size_t k = 0; k < mesh_.cells.size(); ++k) {
       const auto c = static_cast<Index>(k);
       for (std::size_t i = 0; mesh_.is_alive(c) && i < 4; ++i)
-        if (mesh_.opposite(HalfFacet(c, i)).cell() > c)
+        if (const HalfFacet beyond = mesh_.opposite(HalfFacet(c, i));
+            !beyond.exists() || beyond.cell() > c)
           list(HalfFacet(c, i), failing_);
     }
   }
 
   /// Adds a failing facet as seen from its first cell.
   void list(HalfFacet h, std::vector<HalfFacet> &to) {
-    if (mesh_.opposite(h).exists() && state_.margins.fails(h))
-      to.push_back(std::min(h, mesh_.opposite(h), before));
+    if (!state_.margins.fails(h))
+      return;
+    const HalfFacet beyond = mesh_.opposite(h);
+    to.push_back(beyond.exists() ? std::min(h, beyond, before) : h);
   }
   static bool before(HalfFacet a, HalfFacet b) {
     return a.cell() != b.cell() ? a.cell() < b.cell() : a.facet() < b.facet();
@@ -226,12 +229,6 @@ private:
     return failing_.empty() ? AgreementStop::agreed : AgreementStop::rounds;
   }
 
-  /// The vertices that decide about a facet: its own and those of its cells beside it.
-  [[nodiscard]] std::array<Index, 5> vertices_at(HalfFacet h) const {
-    const Facet<3> t = mesh_.facet(h);
-    return {t[0], t[1], t[2], mesh_.apex(h), mesh_.apex(mesh_.opposite(h))};
-  }
-
   [[nodiscard]] CounterRandom random_at(HalfFacet h, int round) const {
     return {run_.seed, Stream::repair_facet, h.code(),
             static_cast<std::uint32_t>(round)};
@@ -255,7 +252,7 @@ private:
                                    : volume_.state.slabs.of_star(v, slab_round);
   }
   [[nodiscard]] std::size_t slab_of_facet(HalfFacet h, int slab_round) const {
-    const std::array<Index, 5> vertices = vertices_at(h);
+    const DecidingVertices vertices(mesh_, h);
     const std::size_t slab = slab_of_vertex(vertices[0], slab_round);
     const bool is_one = std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
       return slab_of_vertex(v, slab_round) == slab;
@@ -280,11 +277,11 @@ private:
   }
   std::size_t step_at(VolumeRelocation &relocation, HalfFacet h, int round) {
     CounterRandom random = random_at(h, round);
-    const std::array<Index, 5> vertices = vertices_at(h);
-    const auto first = static_cast<std::size_t>(5 * random.uniform());
+    const DecidingVertices vertices(mesh_, h);
+    const std::size_t n = vertices.size(), first = random.below(n);
     std::size_t moves = 0;
-    for (std::size_t k = 0; k < 5 && state_.margins.fails(h); ++k)
-      moves += relocation.step(vertices[(first + k) % 5]);
+    for (std::size_t k = 0; k < n && state_.margins.fails(h); ++k)
+      moves += relocation.step(vertices[(first + k) % n]);
     return moves;
   }
 
@@ -314,10 +311,10 @@ private:
       ++counts_.swaps;
       return;
     }
-    const std::array<Index, 5> vertices = vertices_at(h);
-    const auto first = static_cast<std::size_t>(5 * random.uniform());
-    for (std::size_t k = 0; k < 5; ++k) {
-      const Index v = vertices[(first + k) % 5];
+    const DecidingVertices vertices(mesh_, h);
+    const std::size_t n = vertices.size(), first = random.below(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Index v = vertices[(first + k) % n];
       if (round % reinsertion_period == 0)
         counts_.reinsertions += repair_.reinsert(v);
       counts_.moves += relocation_.relocate(v, radius, random);
@@ -392,7 +389,8 @@ void rest_where_agreed(Volume &volume, const Run &run) {
   const Triangulation<3> &mesh = volume.mesh;
   if (!has_unit_edges(mesh))
     return;
-  FacetMargins margins(mesh);
+  const SurfaceNormals normals(volume, run.threads);
+  FacetMargins margins(mesh, normals);
   margins.fill(run.threads);
   PerVertex<std::uint8_t> agrees(mesh.vertices.size(), 1);
   std::size_t failing = 0;

@@ -9,9 +9,13 @@ namespace anistar {
 /// For all threads. What belongs to cells and vertices of a slab is changed by the
 /// thread that changes these.
 struct AgreementState {
-  explicit AgreementState(const Triangulation<3> &mesh)
-      : margins(mesh), is_stuck(mesh.vertices.size(), 0) {}
+  AgreementState(const Volume &volume, int threads)
+      : normals(volume, threads), margins(volume.mesh, normals),
+        is_stuck(volume.mesh.vertices.size(), 0) {}
+  AgreementState(const AgreementState &) = delete; // margins refer to normals
+  AgreementState &operator=(const AgreementState &) = delete;
 
+  SurfaceNormals normals;
   FacetMargins margins;
   FarViolations far;
   /// Vertices that found no directed step, and whose stars have not changed since.

@@ -10,12 +10,38 @@ FacetStar facet_star(const Triangulation<3> &mesh, HalfFacet h) {
           &mesh.vertex(mesh.apex(h)), &mesh.vertex(mesh.apex(mesh.opposite(h)))};
 }
 
-void FacetMargins::look(HalfFacet h) {
-  if (!mesh_.opposite(h).exists() || mesh_.constraint(h) != none) {
-    known_[h.cell()][h.facet()] = untested;
-    return;
+WallStar wall_star(const Triangulation<3> &mesh, const SurfaceNormals &normals,
+                   const Facet<3> &facet, Index patch, std::array<Index, 2> apexes) {
+  WallStar star;
+  for (std::size_t k = 0; k < 3; ++k) {
+    star.corners[k] = &mesh.vertex(facet[k]);
+    star.normals[k] = normals.at(facet[k], patch);
   }
-  put(h, as_margin(facet_margin(facet_star(mesh_, h))));
+  for (std::size_t k = 0; k < 2; ++k)
+    star.apexes[k] = apexes[k] == none ? nullptr : &mesh.vertex(apexes[k]);
+  return star;
+}
+
+DecidingStar deciding_star(const Triangulation<3> &mesh, const SurfaceNormals &normals,
+                           HalfFacet h) {
+  const Index patch = mesh.constraint(h);
+  if (patch == none)
+    return facet_star(mesh, h);
+  const HalfFacet beyond = mesh.opposite(h);
+  return wall_star(mesh, normals, mesh.facet(h), patch,
+                   {mesh.apex(h), beyond.exists() ? mesh.apex(beyond) : none});
+}
+
+double margin_of(const DecidingStar &star) {
+  const auto *wall = std::get_if<WallStar>(&star);
+  return wall ? wall_margin(*wall) : facet_margin(std::get<FacetStar>(star));
+}
+
+DecidingVertices::DecidingVertices(const Triangulation<3> &mesh, HalfFacet h) {
+  const Facet<3> t = mesh.facet(h);
+  vertices_ = {t[0], t[1], t[2], mesh.apex(h), none};
+  if (const HalfFacet beyond = mesh.opposite(h); beyond.exists())
+    vertices_[n_++] = mesh.apex(beyond);
 }
 
 void FacetMargins::fill(int threads) {

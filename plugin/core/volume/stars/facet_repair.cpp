@@ -45,6 +45,11 @@ AgreementCost FacetRepair::cost_of_proposal() const {
       star[k] = &volume_.mesh.vertex(v[k]);
     cost.add_facet(facet_margin(star));
   });
+  operator_.for_new_walls(
+      [&](const Facet<3> &facet, Index patch, std::array<Index, 2> apexes) {
+        cost.add_facet(wall_margin(
+            wall_star(volume_.mesh, view_.state.normals, facet, patch, apexes)));
+      });
   return cost;
 }
 
@@ -80,16 +85,43 @@ bool FacetRepair::replace(std::span<const Index> cells, Index apex,
 }
 
 bool FacetRepair::swap(HalfFacet facet, Demand demand) {
-  const Triangulation<3> &mesh = volume_.mesh;
-  const std::array<Index, 2> both{facet.cell(), mesh.opposite(facet).cell()};
-  const Facet<3> t = mesh.facet(facet);
-  if (replace(both, mesh.apex(facet), {none, none},
-              {.floor = agreement_floor, .gain = 0}, demand))
+  if (volume_.mesh.constraint(facet) != none)
+    return swap_wall(facet, demand);
+  if (into_edge(facet, demand))
     return true;
+  const Facet<3> t = volume_.mesh.facet(facet);
   for (std::size_t k = 0; k < 3; ++k)
     if (remove_edge(facet.cell(), t[k], t[(k + 1) % 3], demand))
       return true;
   return false;
+}
+
+/// The apexes of a wall change with the facets and edges of its cells, the wall itself
+/// with its own edges.
+bool FacetRepair::swap_wall(HalfFacet wall, Demand demand) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  for (const HalfFacet side : {wall, mesh.opposite(wall)}) {
+    if (!side.exists())
+      continue;
+    const Cell<3> cell = mesh.at(side.cell());
+    for (std::size_t i = 0; i < 4; ++i)
+      if (const HalfFacet h(side.cell(), i);
+          i != side.facet() && mesh.constraint(h) == none && into_edge(h, demand))
+        return true;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j)
+        if (remove_edge(side.cell(), cell[i], cell[j], demand))
+          return true;
+  }
+  return false;
+}
+
+/// The facet becomes an edge between its apexes.
+bool FacetRepair::into_edge(HalfFacet facet, Demand demand) {
+  const Triangulation<3> &mesh = volume_.mesh;
+  const std::array<Index, 2> both{facet.cell(), mesh.opposite(facet).cell()};
+  return replace(both, mesh.apex(facet), {none, none},
+                 {.floor = agreement_floor, .gain = 0}, demand);
 }
 
 bool FacetRepair::remove_edge(Index c, Index a, Index b, Demand demand) {
@@ -167,10 +199,12 @@ bool FacetRepair::insert(Index c, Index a, Index b, CounterRandom &random) {
 
 bool FacetRepair::collapse_or_insert(HalfFacet facet, CounterRandom &random) {
   const Triangulation<3> &mesh = volume_.mesh;
-  const std::array<Index, 2> both{facet.cell(), mesh.opposite(facet).cell()};
+  const std::array<HalfFacet, 2> sides{facet, mesh.opposite(facet)};
   // both cells have the three edges of the facet: the second brings three more
-  for (Index c : both) {
-    const Cell<3> cell = mesh.at(c);
+  for (HalfFacet side : sides) {
+    if (!side.exists())
+      continue;
+    const Cell<3> cell = mesh.at(side.cell());
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j)
         if (i != j &&
@@ -178,12 +212,14 @@ bool FacetRepair::collapse_or_insert(HalfFacet facet, CounterRandom &random) {
             collapse(cell[i], cell[j]))
           return true;
   }
-  for (Index c : both) {
-    const Cell<3> cell = mesh.at(c);
+  for (HalfFacet side : sides) {
+    if (!side.exists())
+      continue;
+    const Cell<3> cell = mesh.at(side.cell());
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = i + 1; j < 4; ++j)
         if (fast_length(mesh.vertex(cell[i]), mesh.vertex(cell[j])) > splittable &&
-            insert(c, cell[i], cell[j], random))
+            insert(side.cell(), cell[i], cell[j], random))
           return true;
   }
   return false;

@@ -19,7 +19,8 @@ public:
   /// What the cost must do: go down, or count fewer facets.
   enum class Demand { lower_cost, fewer_failing };
 
-  /// The facet becomes an edge, or one of its edges is removed.
+  /// The facet becomes an edge, or one of its edges is removed; at a wall, the facets
+  /// and edges of its cells.
   bool swap(HalfFacet facet, Demand demand);
   /// The star of v grows to its Delaunay star in the metric of v.
   bool reinsert(Index v);
@@ -41,6 +42,8 @@ private:
   [[nodiscard]] bool is_worth_it(std::span<const Index> cells, Demand demand);
   [[nodiscard]] AgreementCost cost_of(std::span<const Index> cells);
   [[nodiscard]] AgreementCost cost_of_proposal() const;
+  [[nodiscard]] bool swap_wall(HalfFacet wall, Demand demand);
+  [[nodiscard]] bool into_edge(HalfFacet facet, Demand demand);
   [[nodiscard]] bool remove_edge(Index c, Index a, Index b, Demand demand);
   [[nodiscard]] bool collapse(Index v, Index u);
   [[nodiscard]] bool insert(Index c, Index a, Index b, CounterRandom &random);

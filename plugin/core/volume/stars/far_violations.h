@@ -1,27 +1,33 @@
 #pragma once
-// Vertices inside of the circumballs of cells that are no neighbours of theirs: no
-// facet tells of them.
+// Vertices inside of the circumballs of cells, or of the surface balls of walls, that
+// are no neighbours of theirs: no facet tells of them.
 
-#include "certificate/facet_test.h"
-#include "mesh/triangulation.h"
+#include "volume/stars/facet_margins.h"
 
 #include <algorithm>
 #include <unordered_map>
 
 namespace anistar {
 
-/// The vertices of a cell, in its order, and the one inside of a ball of it.
-using FarViolation = std::array<Index, 5>;
+struct FarViolation {
+  /// Those of a cell, in its order, or of a wall and none; then the one inside of a
+  /// ball of it.
+  std::array<Index, 5> vertices;
+  Index patch = none; ///< of a wall
+
+  bool operator==(const FarViolation &) const = default;
+};
 
 /// Each is watched like a facet: its five vertices decide about it in the same way.
 class FarViolations {
 public:
   void add(const FarViolation &found) {
-    std::vector<FarViolation> &known = at_[found[0]];
+    std::vector<FarViolation> &known = at_[found.vertices[0]];
     if (std::find(known.begin(), known.end(), found) != known.end())
       return;
-    for (Index v : found)
-      at_[v].push_back(found);
+    for (Index v : found.vertices)
+      if (v != none)
+        at_[v].push_back(found);
   }
   [[nodiscard]] bool empty() const { return at_.empty(); }
   /// Those with v among the five.
@@ -36,11 +42,15 @@ private:
   std::unordered_map<Index, std::vector<FarViolation>> at_;
 };
 
-[[nodiscard]] inline FacetStar star_of(const Triangulation<3> &mesh,
-                                       const FarViolation &violation) {
+[[nodiscard]] inline DecidingStar star_of(const Triangulation<3> &mesh,
+                                          const SurfaceNormals &normals,
+                                          const FarViolation &violation) {
+  const std::array<Index, 5> &v = violation.vertices;
+  if (violation.patch != none)
+    return wall_star(mesh, normals, {v[0], v[1], v[2]}, violation.patch, {v[4], none});
   FacetStar star;
   for (std::size_t k = 0; k < star.size(); ++k)
-    star[k] = &mesh.vertex(violation[k]);
+    star[k] = &mesh.vertex(v[k]);
   return star;
 }
 

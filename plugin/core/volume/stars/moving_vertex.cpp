@@ -27,6 +27,7 @@ bool MovingVertex::gather_around() {
   safe_.clear();
   ring_.clear();
   failing_facets_ = 0;
+  take_home_normals();
   volume_.open_vertices();
   volume_.mark_vertex(v_);
   for (Index c : star_) {
@@ -42,36 +43,63 @@ bool MovingVertex::gather_around() {
   return true;
 }
 
-/// The facets of a cell of the star that have another side and are no walls; those at v
-/// from one of their cells only. @param at where v is in the cell
+/// The facets of a cell of the star; those at v from one of their cells only.
+/// @param at where v is in the cell
 bool MovingVertex::gather_facets(Index c, std::size_t at) {
   const Triangulation<3> &mesh = volume_.mesh;
   for (std::size_t i = 0; i < 4; ++i) {
     const HalfFacet h(c, i), other = mesh.opposite(h);
-    if (!other.exists() || (i != at && other.cell() < c) || mesh.constraint(h) != none)
+    if (other.exists() && i != at && other.cell() < c)
       continue;
-    if (volume_.slab && !volume_.is_inside(mesh.apex(other))) {
+    if (volume_.slab && other.exists() && !volume_.is_inside(mesh.apex(other))) {
       volume_.is_put_off = true;
       return false;
     }
-    add(h, facet_star(mesh, h), static_cast<double>(view_.state.margins.at(h)));
+    add(h, deciding_star(mesh, view_.state.normals, h),
+        static_cast<double>(view_.state.margins.at(h)));
   }
   return true;
 }
 
 void MovingVertex::gather_far_violations() {
   for (const FarViolation &violation : view_.state.far.at(v_)) {
-    const FacetStar star = star_of(volume_.mesh, violation);
-    add(HalfFacet(), star, facet_margin(star));
+    const DecidingStar star = star_of(volume_.mesh, view_.state.normals, violation);
+    add(HalfFacet(), star, margin_of(star));
   }
 }
 
-void MovingVertex::add(HalfFacet at, FacetStar star, double here) {
-  for (const Vertex<3> *&vertex : star)
-    if (vertex == &home())
-      vertex = &trial_.vertex();
+void MovingVertex::add(HalfFacet at, const DecidingStar &star, double here) {
   failing_facets_ += at.exists() && here > 0;
-  (here > critical_margin ? facets_ : safe_).push_back({at, star, here});
+  TestedFacet &facet = (here > critical_margin ? facets_ : safe_)
+                           .emplace_back(TestedFacet{at, star, here});
+  std::visit([&](auto &of_home) { put_trial_in(of_home); }, facet.star);
+}
+
+void MovingVertex::put_trial_in(FacetStar &star) const {
+  const Vertex<3> *const from = &home(), *const to = &trial_.vertex();
+  std::replace(star.begin(), star.end(), from, to);
+}
+
+void MovingVertex::put_trial_in(WallStar &star) const {
+  const Vertex<3> *const from = &home(), *const to = &trial_.vertex();
+  std::replace(star.apexes.begin(), star.apexes.end(), from, to);
+  std::replace(star.corners.begin(), star.corners.end(), from, to);
+  const auto at_home = view_.state.normals.at(v_);
+  for (std::size_t n = 0; n < normals_.size(); ++n) {
+    const Vector<3> *const before = &at_home[n].along, *const tried = &normals_[n].along;
+    std::replace(star.normals.begin(), star.normals.end(), before, tried);
+  }
+}
+
+void MovingVertex::take_home_normals() {
+  const auto at_home = view_.state.normals.at(v_);
+  normals_.assign(at_home.begin(), at_home.end());
+}
+
+/// Finds the normals of curved surfaces where the vertex is tried.
+void MovingVertex::take_normals() {
+  for (auto &[patch, along] : normals_)
+    along = volume_.surface.normal(patch, trial_.vertex().x, along);
 }
 
 PlaceScore MovingVertex::score_here() const {
@@ -130,10 +158,11 @@ std::optional<PlaceScore> MovingVertex::evaluate(double floor, double limit) {
   for (std::size_t k = 0; k < star_.size(); ++k)
     score.cost.add_cell(static_cast<double>(shapes.quality(k)));
   score.lengths = length_penalty(trial_.vertex());
+  take_normals();
   margins_.clear();
   int failing_facets = 0;
   for (const TestedFacet &facet : facets_) {
-    margins_.push_back(facet_margin(facet.star));
+    margins_.push_back(margin_of(facet.star));
     score.cost.add_facet(margins_.back());
     failing_facets += facet.at.exists() && margins_.back() > 0;
     if (score.total() >= limit)
@@ -147,10 +176,11 @@ std::optional<PlaceScore> MovingVertex::evaluate(double floor, double limit) {
 bool MovingVertex::disagrees_no_more(const PlaceScore &before) {
   if (length_penalty(trial_.vertex()) > before.lengths + round_off)
     return false;
+  take_normals();
   margins_.clear();
   int failing = 0;
   for (const TestedFacet &facet : facets_) {
-    margins_.push_back(facet_margin(facet.star));
+    margins_.push_back(margin_of(facet.star));
     failing += margins_.back() > 0;
     if (failing > before.cost.failing)
       return false;
@@ -161,11 +191,13 @@ bool MovingVertex::disagrees_no_more(const PlaceScore &before) {
 void MovingVertex::remember() {
   trial_.remember(best_);
   best_margins_.swap(margins_);
+  best_normals_.assign(normals_.begin(), normals_.end());
 }
 
 void MovingVertex::move_to_best() {
   trial_.commit(best_);
   view_.changed.insert(view_.changed.end(), star_.begin(), star_.end());
+  view_.state.normals.put(v_, best_normals_);
   view_.more_failing -= failing_facets_;
   for (std::size_t k = 0; k < facets_.size(); ++k)
     if (facets_[k].at.exists()) {

@@ -39,7 +39,10 @@ public:
   [[nodiscard]] bool gather_around();
   [[nodiscard]] bool gather(Index v) { return gather_star(v) && gather_around(); }
   /// Takes the vertex back to where it is in the mesh.
-  void return_home() { (void)trial_.gather(v_, star_); }
+  void return_home() {
+    (void)trial_.gather(v_, star_);
+    take_home_normals();
+  }
 
   // of the vertex where it is in the mesh
   [[nodiscard]] Index id() const { return v_; }
@@ -71,11 +74,10 @@ public:
     move_to_best();
   }
 
-  /// A facet between two cells, or what is watched like one, with the trial vertex in
-  /// the place of v.
+  /// A facet, or what is watched like one, with the trial vertex in the place of v.
   struct TestedFacet {
     HalfFacet at; ///< none of a far violation
-    FacetStar star;
+    DecidingStar star;
     double here; ///< the margin where v is in the mesh
   };
   [[nodiscard]] std::span<const TestedFacet> facets() const { return facets_; }
@@ -94,16 +96,22 @@ private:
   Index v_ = none;
   std::vector<Index> star_, ring_; ///< its cells, and the vertices it has edges with
   std::vector<TestedFacet> facets_, safe_;
-  std::vector<double> margins_; ///< at the place that is tried
+  std::vector<SurfaceNormals::Normal> normals_; ///< at the place that is tried
+  std::vector<double> margins_;                 ///< there
   int failing_facets_ = 0;      ///< where v is in the mesh
   TriedPlace best_;
+  std::vector<SurfaceNormals::Normal> best_normals_;
   std::vector<double> best_margins_;
   std::size_t trials_ = 0;
 
   [[nodiscard]] bool put(const Vector<3> &x);
   [[nodiscard]] bool gather_facets(Index c, std::size_t at);
   void gather_far_violations();
-  void add(HalfFacet at, FacetStar star, double here);
+  void add(HalfFacet at, const DecidingStar &star, double here);
+  void put_trial_in(FacetStar &star) const;
+  void put_trial_in(WallStar &star) const;
+  void take_home_normals();
+  void take_normals();
   [[nodiscard]] double length_penalty(const Vertex<3> &at) const;
 };
 

@@ -4,6 +4,7 @@
 #include "stars/certify_all.h"
 #include "stars/rules.h"
 #include "volume/stars/relocation.h"
+#include "volume/stars/wall_violations.h"
 
 namespace anistar {
 namespace {
@@ -22,22 +23,23 @@ public:
   VolumeMender(Volume &volume, const Run &run, DelaunayBits &known)
       : volume_(volume), mesh_(volume.mesh), run_(run), known_(known),
         test_(certified(mesh_)),
-        state_(mesh_), view_{volume, state_, run.hausdorff.surface},
+        state_(volume, run.threads), view_{volume, state_, run.hausdorff.surface},
         relocation_(view_) {}
 
   MendingCounts mend(double mended_part) {
     MendingCounts counts;
-    std::vector<Index> failing = failing_cells(mesh_, known_.bits);
-    if (double(failing.size()) > mended_part * double(mesh_.n_cells()))
+    Failures failing = failures(0);
+    const double most = mended_part * double(mesh_.n_cells());
+    if (double(failing.cells.size()) > most || double(failing.walls.size()) > most)
       return counts;
     bool is_progressing = true;
-    for (int round = 0; round < max_rounds && is_progressing && !failing.empty() &&
+    for (int round = 0; round < max_rounds && is_progressing && failing.size() > 0 &&
                         run_.monitor.look(fraction_of(round));
          ++round) {
       const std::size_t before = failing.size(), moved = move_at(failing, round);
       renew(fraction_of(round));
       counts.moves += moved;
-      failing = failing_cells(mesh_, known_.bits);
+      failing = failures(fraction_of(round));
       is_progressing =
           round < first_random ||
           (moved > 0 && double(failing.size()) <= good_progress * double(before));
@@ -56,6 +58,17 @@ private:
   AgreementView view_;
   VolumeRelocation relocation_;
 
+  struct Failures {
+    std::vector<Index> cells;
+    std::vector<WallViolation> walls;
+
+    [[nodiscard]] std::size_t size() const { return cells.size() + walls.size(); }
+  };
+  [[nodiscard]] Failures failures(double fraction) const {
+    return {failing_cells(mesh_, known_.bits),
+            wall_violations(volume_, state_.normals, run_.threads,
+                            to_the_end(run_.monitor, fraction))};
+  }
   [[nodiscard]] static double fraction_of(int round) {
     return double(round) / max_rounds;
   }
@@ -65,24 +78,27 @@ private:
   }
 
   /// One vertex after another of every violation moves until it is none.
-  std::size_t move_at(const std::vector<Index> &failing, int round) {
+  std::size_t move_at(const Failures &failing, int round) {
     std::size_t moves = 0;
-    const std::vector<FarViolation> found = violations(failing, round);
+    std::vector<FarViolation> found = violations(failing.cells, round);
+    add_violations(failing.walls, found);
     for (std::size_t n = 0; n < found.size() && goes_on(n, round); ++n) {
       const FarViolation &violation = found[n];
-      CounterRandom random(run_.seed, Stream::mend, violation[0], round);
-      const auto first = static_cast<std::size_t>(5 * random.uniform());
-      for (std::size_t k = 0; k < 5 && is_violated(violation); ++k) {
-        const Index v = violation[(first + k) % 5];
+      const std::array<Index, 5> &vertices = violation.vertices;
+      CounterRandom random(run_.seed, Stream::mend, vertices[0], round);
+      const std::size_t first = random.below(vertices.size());
+      for (std::size_t k = 0; k < vertices.size() && is_violated(violation); ++k) {
+        const Index v = vertices[(first + k) % vertices.size()];
         moves +=
-            relocation_.step(v) ||
-            (round >= first_random && relocation_.relocate(v, random_radius, random));
+            v != none &&
+            (relocation_.step(v) ||
+             (round >= first_random && relocation_.relocate(v, random_radius, random)));
       }
     }
     return moves;
   }
   [[nodiscard]] bool is_violated(const FarViolation &violation) const {
-    return facet_margin(star_of(mesh_, violation)) > 0;
+    return margin_of(star_of(mesh_, state_.normals, violation)) > 0;
   }
 
   /// What makes cells fail. That which no facet tells of is watched from now on.
@@ -96,18 +112,33 @@ private:
         if ((known_.bits[c] >> k & 1) != 0)
           continue;
         const Index w = test_.violator(c, mesh_.vertex(cell[k]).M);
-        const FarViolation violation{cell[0], cell[1], cell[2], cell[3], w};
+        const FarViolation violation{{cell[0], cell[1], cell[2], cell[3], w}};
         if (w == none || (!found.empty() && found.back() == violation))
           continue;
         found.push_back(violation);
         if (is_neighbour(c, w))
           continue;
-        state_.far.add(violation);
-        for (Index v : violation)
-          state_.is_stuck[v] = 0;
+        watch(violation);
       }
     }
     return found;
+  }
+  void add_violations(const std::vector<WallViolation> &walls,
+                      std::vector<FarViolation> &to) {
+    for (const auto &[wall, inside] : walls) {
+      const Facet<3> t = mesh_.facet(wall);
+      to.push_back({{t[0], t[1], t[2], none, inside}, mesh_.constraint(wall)});
+      const HalfFacet beyond = mesh_.opposite(wall);
+      if (inside != mesh_.apex(wall) &&
+          (!beyond.exists() || inside != mesh_.apex(beyond)))
+        watch(to.back());
+    }
+  }
+  void watch(const FarViolation &violation) {
+    state_.far.add(violation);
+    for (Index v : violation.vertices)
+      if (v != none)
+        state_.is_stuck[v] = 0;
   }
   [[nodiscard]] bool is_neighbour(Index c, Index w) const {
     for (std::size_t i = 0; i < 4; ++i)

@@ -69,13 +69,33 @@ void StepBounds::keep_facets(const MovingVertex &vertex) {
   for (const MovingVertex::TestedFacet &facet : vertex.facets()) {
     if (facet.here < near_margin)
       continue;
-    const auto at = std::find(facet.star.begin(), facet.star.end(), &vertex.tried());
-    const FacetSlope now = facet_slope(facet.star, at - facet.star.begin());
+    const FacetSlope now = std::visit(
+        [&](const auto &star) { return slope_of(star, &vertex.tried()); }, facet.star);
     const double kept =
         now.margin > 0 ? wanted_margin : .5 * std::min(-now.margin, wanted_margin);
-    bounds_.push_back(
-        {now.margin + kept, axes_.transpose() * now.gradient, now.margin > 0});
+    bounds_.push_back({now.margin + kept, now.gradient, now.margin > 0});
   }
+}
+
+/// The gradients are those with respect to the step.
+FacetSlope StepBounds::slope_of(const FacetStar &star, const Vertex<3> *moved) const {
+  const auto at = std::find(star.begin(), star.end(), moved);
+  const FacetSlope slope = facet_slope(star, at - star.begin());
+  return {slope.margin, axes_.transpose() * slope.gradient};
+}
+
+FacetSlope StepBounds::slope_of(const WallStar &star, const Vertex<3> *moved) const {
+  Vertex<3> beside = *moved;
+  const Vertex<3> *const there = &beside;
+  WallStar changed = star;
+  std::replace(changed.corners.begin(), changed.corners.end(), moved, there);
+  std::replace(changed.apexes.begin(), changed.apexes.end(), moved, there);
+  FacetSlope slope{wall_margin(star), Vector<3>::Zero()};
+  for (int k = 0; k < 3; ++k) {
+    beside.x = moved->x + difference_step * axes_.col(k);
+    slope.gradient[k] = (wall_margin(changed) - slope.margin) / difference_step;
+  }
+  return slope;
 }
 
 bool StepBounds::give_up(const Vector<3> &y) {

@@ -46,6 +46,9 @@ private:
   Matrix<3> axes_; ///< of the coordinates, in space
   std::vector<LinearBound> bounds_;
   std::array<std::vector<double>, 3> quality_slopes_;
+
+  [[nodiscard]] FacetSlope slope_of(const FacetStar &star, const Vertex<3> *moved) const;
+  [[nodiscard]] FacetSlope slope_of(const WallStar &star, const Vertex<3> *moved) const;
 };
 
 } // namespace anistar
