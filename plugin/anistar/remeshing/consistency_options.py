@@ -18,6 +18,9 @@ class ConsistencyOptions:
         Rule 1 refines a simplex whose circumradius is at least ``alpha_0 * sf``; the sizing
         field sf is 1 in the metric, less where ``gamma_0`` asks for it. A unit equilateral
         triangle has .577, so .95 leaves a quasi-unit mesh alone.
+    alpha_1 : float, optional
+        The same for the facets of surfaces and their surface balls; half of `alpha_0` by default.
+        The proof of termination (Theorem 7.1) asks for less than a fortieth.
     rho_0 : float
         Rule 2: largest radius-edge ratio; above sqrt 2, the classical bound for termination.
     sigma_0 : float
@@ -37,6 +40,7 @@ class ConsistencyOptions:
     """
 
     alpha_0: float = 0.95
+    alpha_1: float | None = None
     rho_0: float = 1.5
     sigma_0: float = 0.05
     gamma_0: float | None = None
@@ -49,6 +53,8 @@ class ConsistencyOptions:
         for name in ("alpha_0", "rho_0", "sigma_0", "beta", "max_growth"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+        if self.alpha_1 is not None and not self.alpha_1 > 0:
+            raise ValueError(f"alpha_1 must be positive, got {self.alpha_1}")
         if not 0 < self.delta < 1:
             raise ValueError(f"delta must be in (0, 1), got {self.delta}")
         if self.gamma_0 is not None and not self.gamma_0 > 1:
@@ -61,4 +67,5 @@ class ConsistencyOptions:
         parameters = _core.ConsistencyParameters()
         for name, value in asdict(self).items():
             setattr(parameters, name, math.inf if value is None else value)
+        parameters.alpha_1 = 0.5 * self.alpha_0 if self.alpha_1 is None else self.alpha_1
         return parameters

@@ -1,16 +1,18 @@
 #pragma once
-// Algorithms 2 and 3 of Boissonnat, Wormser, Yvinec (RR-7712 v2, section 4) on one
-// valid mesh of triangles or of tetrahedra: the rounds of insertions, and Pick_valid.
+// Algorithms 2 to 5 of Boissonnat, Wormser, Yvinec (RR-7712 v2, sections 4 and 7.1) on
+// one valid mesh of triangles or of tetrahedra: the rounds of insertions, and
+// Pick_valid.
 //
-// Differs from the paper: one valid mesh is kept instead of the star set; the simplices
-// of the star S_v are the cells that are Delaunay in M_v. Pick_valid takes the best of
-// a bounded number of points when none is valid. A round treats many cells. When it
-// does not end consistent, the best mesh seen is left.
+// Differs from the paper: one valid mesh is kept instead of the star sets; the
+// simplices of the star S_v are the cells that are Delaunay in M_v, those of the
+// surface star T_v the facets of surfaces with an empty M_v-surface ball. Pick_valid
+// takes the best of a bounded number of points when none is valid. A round treats many
+// cells. When it does not end consistent, the best mesh seen is left.
 
 #include "base/ellipse_sampler.h"
 #include "base/run.h"
 #include "mesh/mesh_walk.h"
-#include "stars/bad_cells.h"
+#include "stars/bad_facets.h"
 
 #include <optional>
 #include <utility>
@@ -105,14 +107,27 @@ struct RoundBounds {
   }
 };
 
-/// Algorithm 2: rounds of insertions by the rules in their order until every star is
-/// Delaunay in its own metric, or a bound ends them.
+template <std::size_t d>
+[[nodiscard]] std::vector<BadCell<d>>
+in_order_of_rules(const std::vector<BadCell<d>> &facets,
+                  const std::vector<BadCell<d>> &cells) {
+  std::vector<BadCell<d>> all;
+  all.reserve(facets.size() + cells.size());
+  std::merge(facets.begin(), facets.end(), cells.begin(), cells.end(),
+             std::back_inserter(all),
+             [](const BadCell<d> &a, const BadCell<d> &b) { return a.rule < b.rule; });
+  return all;
+}
+
+/// Algorithms 2 and 4: rounds of insertions by the rules in their order until every
+/// star is Delaunay in its own metric, or a bound ends them.
 ///
 /// @tparam Rounds the changes of one dimension: mesh(), background(), n_vertices();
-/// `d`, `max_rounds`; patience(n_bad); are_rules_everywhere(): rules 1 to 3 also for
+/// `d`, `max_rounds`; patience(n_bad); are_rules_everywhere(): the other rules also for
 /// cells that are consistent; treat(bad, counts, known): one round, after which `known`
 /// is true of the mesh again; note(failing, best): hears the part of the cells that
-/// fails after a round, and in the best mesh before; rounds_without_gain();
+/// fails after a round, and in the best mesh before; surface_stars(): the facets of its
+/// surfaces; rounds_without_gain();
 /// is_starting(): the mesh is too coarse to be judged, it is the best one, and may
 /// grow; snapshot(), restore(snapshot)
 /// @param known the answers for the mesh, which has no free cells; afterwards for the
@@ -136,20 +151,29 @@ insert_until_consistent(Rounds &rounds, const Run &run,
     bounds.most_vertices =
         (1 + parameters.max_growth) * static_cast<double>(rounds.n_vertices());
   };
-  double failing = failing_fraction(rounds.mesh(), known.bits);
+  SurfaceStars<d> surface;
+  const auto look_at_failing = [&] {
+    surface = rounds.surface_stars();
+    return failing_fraction(rounds.mesh(), known.bits) +
+           static_cast<double>(surface.n_failing()) /
+               static_cast<double>(rounds.mesh().n_cells());
+  };
+  double failing = look_at_failing();
   std::optional<Best> best(seen(failing));
   may_grow_from_here();
   for (counts.rounds = 0;; ++counts.rounds) {
     const std::vector<BadCell<d>> bad =
-        bad_cells<d>(rounds.mesh(), rounds.background(), known.bits, parameters,
-                     rounds.are_rules_everywhere());
+        in_order_of_rules(bad_facets<d>(rounds.mesh(), rounds.background(), surface,
+                                        parameters, rounds.are_rules_everywhere()),
+                          bad_cells<d>(rounds.mesh(), rounds.background(), known.bits,
+                                       parameters, rounds.are_rules_everywhere()));
     bounds.patience = rounds.patience(bad.size());
     counts.stop = bounds.stop(bad.empty(), counts.rounds, rounds.rounds_without_gain(),
                               rounds.n_vertices(), run.monitor);
     if (counts.stop != ConsistencyStop::none_yet)
       break;
     rounds.treat(bad, counts, known);
-    failing = failing_fraction(rounds.mesh(), known.bits);
+    failing = look_at_failing();
     rounds.note(failing, best->failing);
     if (rounds.is_starting())
       may_grow_from_here();

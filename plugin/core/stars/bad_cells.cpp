@@ -8,19 +8,6 @@
 namespace anistar {
 namespace {
 
-/// The sizing field at the centre of a ball in the metric of a vertex: one, the unit of
-/// the metric, or the bounded distortion radius where that is smaller.
-template <std::size_t d>
-[[nodiscard]] double size_at(const Background<d> &background,
-                             const Circumsphere<d> &ball, Index background_cell,
-                             double gamma_0) {
-  if (std::isinf(gamma_0))
-    return 1;
-  const Vertex<d> centre = background.vertex(ball.centre, background_cell);
-  return std::min(
-      1., bounded_distortion_radius<d>(background, centre, background_cell, gamma_0));
-}
-
 /// The first rule that a cell breaks in a star; `kept` when it keeps them all.
 template <std::size_t d>
 [[nodiscard]] Rule broken_rule(const Triangulation<d> &mesh,
@@ -30,8 +17,8 @@ template <std::size_t d>
   const Vertex<d> &v = mesh.vertex(star);
   const Circumsphere<d> ball = circumsphere<d>(v.M, s);
   const double shortest = shortest_length<d>(v.M, s);
-  const double sf =
-      size_at<d>(background, ball, mesh.background_cell[star], parameters.gamma_0);
+  const double sf = sizing_field<d>(background, ball.centre, mesh.background_cell[star],
+                                    parameters.gamma_0);
   if (ball.radius >= parameters.alpha_0 * sf)
     return Rule::size;
   if (ball.radius / shortest > parameters.rho_0)
@@ -65,6 +52,16 @@ judge(const Triangulation<d> &mesh, const Background<d> &background, Index c,
 } // namespace
 
 template <std::size_t d>
+double sizing_field(const Background<d> &background, const Vector<d> &centre,
+                    Index background_cell, double gamma_0) {
+  if (std::isinf(gamma_0))
+    return 1;
+  const Vertex<d> there = background.vertex(centre, background_cell);
+  return std::min(
+      1., bounded_distortion_radius<d>(background, there, background_cell, gamma_0));
+}
+
+template <std::size_t d>
 std::vector<BadCell<d>>
 bad_cells(const Triangulation<d> &mesh, const Background<d> &background,
           const std::vector<std::uint8_t> &bits,
@@ -84,6 +81,8 @@ bad_cells(const Triangulation<d> &mesh, const Background<d> &background,
   return bad;
 }
 
+template double sizing_field(const Background<2> &, const Vector<2> &, Index, double);
+template double sizing_field(const Background<3> &, const Vector<3> &, Index, double);
 template std::vector<BadCell<2>> bad_cells(const Triangulation<2> &,
                                            const Background<2> &,
                                            const std::vector<std::uint8_t> &,

@@ -1,6 +1,6 @@
 #pragma once
-// The rules of Algorithm 2 of Boissonnat, Wormser, Yvinec (RR-7712 v2, section 4.1),
-// for meshes of triangles and of tetrahedra.
+// The rules of Algorithms 2 and 4 of Boissonnat, Wormser, Yvinec (RR-7712 v2, sections
+// 4.1 and 7.1), for meshes of triangles and of tetrahedra.
 
 #include "certificate/certificate.h"
 #include "mesh/statistics.h"
@@ -10,9 +10,10 @@ namespace anistar {
 
 /// The parameters of the paper, by their names there.
 struct ConsistencyParameters {
-  double alpha_0; ///< rule 1: r >= alpha_0 sf
-  double rho_0;   ///< rule 2: radius-edge ratio
-  double sigma_0; ///< rule 3: sliverity
+  double alpha_0; ///< size of a cell: r >= alpha_0 sf
+  double alpha_1; ///< the same for facets of surfaces
+  double rho_0;   ///< radius-edge ratio
+  double sigma_0; ///< sliverity
   double gamma_0; ///< distortion bound of the sizing field; infinite: off
   double delta;   ///< picking region: the ball of radius delta r about the circumcentre
   double beta;    ///< hitting sets count up to radius beta r
@@ -24,7 +25,20 @@ struct ConsistencyParameters {
 /// alone and applies nothing but the rules of the paper.
 enum class ConsistencyMode { off, on, pure };
 
-enum class Rule { kept, size, radius_edge, sliver, inconsistency };
+/// The rules of Algorithm 4 in their order; what breaks one is refined before what
+/// breaks a later one. A facet has a topological defect when one of its vertices lies
+/// on no surface: not in a mesh whose facets are given.
+enum class Rule {
+  kept,
+  facet_size,
+  facet_topology,
+  facet_radius_edge,
+  size,
+  radius_edge,
+  sliver,
+  facet_inconsistency,
+  inconsistency
+};
 
 /// Why no round of insertions follows; `none_yet` while one does.
 enum class ConsistencyStop {
@@ -39,7 +53,9 @@ enum class ConsistencyStop {
 
 struct ConsistencyCounts {
   std::size_t size = 0, radius_edge = 0, sliver = 0, inconsistency = 0;
-  std::size_t boundary = 0; ///< splits at encroached constrained facets
+  std::size_t facet_size = 0, facet_topology = 0, facet_radius_edge = 0,
+              facet_inconsistency = 0;
+  std::size_t boundary = 0; ///< points that were snapped to a surface (Algorithm 5)
   std::size_t moves = 0;    ///< of vertices, in 3D
   int rounds = 0;
   double ln_gamma_p90 = 0; ///< of the edges of the cells that fail in the end
@@ -47,6 +63,18 @@ struct ConsistencyCounts {
 
   void add(Rule rule) {
     switch (rule) {
+    case Rule::facet_size:
+      ++facet_size;
+      break;
+    case Rule::facet_topology:
+      ++facet_topology;
+      break;
+    case Rule::facet_radius_edge:
+      ++facet_radius_edge;
+      break;
+    case Rule::facet_inconsistency:
+      ++facet_inconsistency;
+      break;
     case Rule::size:
       ++size;
       break;

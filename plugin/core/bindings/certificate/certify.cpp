@@ -200,15 +200,15 @@ std::pair<Index, double> surface_violator(const MetricMesh &mesh,
   return in_its_dimension(mesh, [&](auto d) {
     const CellsAndWalls<d> given(mesh);
     const CertifiedMesh<d> walled = given.walled.view();
-    const SurfaceFacets<d> surface = surface_of<d>(mesh, bulges);
-    const std::size_t f = facet;
-    const SurfaceFacet<d> seen = surface_facet<d>(walled, surface, f, corner);
-    const HalfFacet at = cells_at_facets<d>(walled, surface.facets.size())[f];
-    if (!at.exists())
-      throw std::invalid_argument("facet " + std::to_string(f) + " is of no cell");
-    const std::size_t v = surface.facets[f][corner];
-    return std::pair(DelaunayTest<d>(walled).violator(at, walled.vertices[v].M, seen),
-                     seen.shift);
+    for (const SeenFacet<d> &found :
+         seen_facets<d>(walled, surface_of<d>(mesh, bulges)))
+      if (walled.constraints[found.at.cell()][found.at.facet()] == facet) {
+        const SymmetricTensor<d> &M = walled.vertices[found.vertices[corner]].M;
+        return std::pair(
+            DelaunayTest<d>(walled).violator(found.at, M, found.seen[corner]),
+            found.seen[corner].shift);
+      }
+    throw std::invalid_argument("facet " + std::to_string(facet) + " is of no cell");
   });
 }
 

@@ -147,6 +147,10 @@ nb::typed<nb::dict, nb::str, nb::float_> as_dict(const ConsistencyCounts &counts
   out["radius_edge"] = counts.radius_edge;
   out["sliver"] = counts.sliver;
   out["inconsistency"] = counts.inconsistency;
+  out["facet_size"] = counts.facet_size;
+  out["facet_topology"] = counts.facet_topology;
+  out["facet_radius_edge"] = counts.facet_radius_edge;
+  out["facet_inconsistency"] = counts.facet_inconsistency;
   out["boundary"] = counts.boundary;
   out["rounds"] = counts.rounds;
   out["ln_gamma_p90"] = counts.ln_gamma_p90;

@@ -26,6 +26,7 @@ void bind_consistency(nb::module_ &module) {
   nb::class_<Parameters>(module, "ConsistencyParameters", "Parameters of Algorithm 2.")
       .def(nb::init<>())
       .def_rw("alpha_0", &Parameters::alpha_0)
+      .def_rw("alpha_1", &Parameters::alpha_1)
       .def_rw("rho_0", &Parameters::rho_0)
       .def_rw("sigma_0", &Parameters::sigma_0)
       .def_rw("gamma_0", &Parameters::gamma_0)

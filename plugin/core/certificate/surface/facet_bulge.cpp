@@ -1,7 +1,5 @@
 #include "certificate/surface/facet_bulge.h"
 
-#include "mesh/measures.h"
-
 #include <algorithm>
 #include <limits>
 
@@ -33,6 +31,14 @@ Vector<d> area_vector(const std::array<Vector<d>, d> &corners) {
     return u.cross(Vector<3>(corners[2] - corners[0]));
 }
 
+/// The direction of the line of the centres: M^-1 area.
+template <std::size_t d>
+Vector<d> axis_of(const SymmetricTensor<d> &M, const Vector<d> &area) {
+  const Matrix<d> L = lower_factor<d>(M);
+  const Vector<d> across = L.template triangularView<Eigen::Lower>().solve(area);
+  return L.transpose().template triangularView<Eigen::Upper>().solve(across);
+}
+
 /// The root nearest zero of a s^2 - b s + c.
 double smallest_root(double a, double b, double c) {
   const double discriminant = b * b - 4 * a * c;
@@ -54,10 +60,7 @@ template <std::size_t d>
 CentreLine<d> centre_line(const SymmetricTensor<d> &M,
                           const std::array<Vector<d>, d> &corners,
                           const Vector<d> &area) {
-  const Matrix<d> L = lower_factor<d>(M);
-  const Vector<d> across = L.template triangularView<Eigen::Lower>().solve(area);
-  const Vector<d> axis =
-      L.transpose().template triangularView<Eigen::Upper>().solve(across);
+  const Vector<d> axis = axis_of<d>(M, area);
   const double area2 = area.squaredNorm();
   const Vector<d> u = corners[1] - corners[0];
   CentreLine<d> line;
@@ -118,6 +121,17 @@ double surface_shift(const SymmetricTensor<d> &M,
   return 2 * smallest_root(a, line.rise * area.norm() - b, c);
 }
 
+template <std::size_t d>
+Circumsphere<d> surface_sphere(const SymmetricTensor<d> &M,
+                               const SurfaceFacet<d> &facet) {
+  const Vector<d> area = area_vector<d>(facet.corners);
+  const std::array<double, d> weights = centre_line<d>(M, facet.corners, area).from;
+  Vector<d> offset = .5 * facet.shift * axis_of<d>(M, area);
+  for (std::size_t k = 1; k < d; ++k)
+    offset += weights[k] * (facet.corners[k] - facet.corners[0]);
+  return {facet.corners[0] + offset, std::sqrt(quadratic<d>(M, offset)), offset};
+}
+
 template FacetBulge<2> facet_bulge<2>(const std::array<Vector<2>, 2> &,
                                       const std::array<Vector<2>, 2> &);
 template FacetBulge<3> facet_bulge<3>(const std::array<Vector<3>, 3> &,
@@ -128,5 +142,9 @@ template double surface_shift<2>(const SymmetricTensor<2> &,
 template double surface_shift<3>(const SymmetricTensor<3> &,
                                  const std::array<Vector<3>, 3> &,
                                  const FacetBulge<3> &);
+template Circumsphere<2> surface_sphere<2>(const SymmetricTensor<2> &,
+                                           const SurfaceFacet<2> &);
+template Circumsphere<3> surface_sphere<3>(const SymmetricTensor<3> &,
+                                           const SurfaceFacet<3> &);
 
 } // namespace anistar

@@ -7,9 +7,8 @@
 // exact; elsewhere the quadratic differs from the surface in the third order of the
 // size of the facet.
 
-#include "base/tensor.h"
-
-#include <array>
+#include "certificate/surface/surface_facet.h"
+#include "mesh/measures.h"
 
 namespace anistar {
 
@@ -29,6 +28,11 @@ template <std::size_t d>
 [[nodiscard]] double surface_shift(const SymmetricTensor<d> &M,
                                    const std::array<Vector<d>, d> &corners,
                                    const FacetBulge<d> &bulge);
+
+/// The M-surface ball of a facet, rounded. @pre its shift is a number
+template <std::size_t d>
+[[nodiscard]] Circumsphere<d> surface_sphere(const SymmetricTensor<d> &M,
+                                             const SurfaceFacet<d> &facet);
 
 /// The same facet with another vertex first.
 template <class Array>

@@ -19,21 +19,37 @@ template <std::size_t d> struct SurfaceFacets {
   std::span<const FacetBulge<d>> bulges;
 };
 
-/// A facet as its k-th vertex sees it.
+/// A facet as each of its vertices sees it.
+template <std::size_t d> struct SeenFacet {
+  HalfFacet at; ///< one of its sides
+  Facet<d> vertices;
+  std::array<SurfaceFacet<d>, d> seen; ///< by each of them
+};
+
 template <std::size_t d>
-[[nodiscard]] SurfaceFacet<d> surface_facet(CertifiedMesh<d> mesh,
-                                            const SurfaceFacets<d> &surface,
-                                            std::size_t facet, std::size_t k);
+[[nodiscard]] SeenFacet<d> seen_facet(CertifiedMesh<d> mesh, HalfFacet at,
+                                      const Facet<d> &vertices,
+                                      const FacetBulge<d> &bulge);
+
+/// The facets of a mesh, without those that are of no cell.
+template <std::size_t d>
+[[nodiscard]] std::vector<SeenFacet<d>> seen_facets(CertifiedMesh<d> mesh,
+                                                    const SurfaceFacets<d> &surface);
+
+/// No ball of a vertex goes through the facet.
+inline constexpr Index no_ball = -2;
+
+/// For every facet and each of its vertices the first vertex found inside of its
+/// surface ball, `none` where the facet is in the surface star, or `no_ball`.
+template <std::size_t d>
+[[nodiscard]] std::vector<std::array<Index, d>>
+encroaching_vertices(CertifiedMesh<d> mesh, std::span<const SeenFacet<d>> facets,
+                     int threads, const Look &look);
 
 /// Bit k: the facet is in the surface star of its vertex k.
 template <std::size_t d>
 [[nodiscard]] std::vector<std::uint8_t> surface_bits(CertifiedMesh<d> mesh,
                                                      const SurfaceFacets<d> &surface,
                                                      int threads, const Look &look);
-
-/// For every facet one of the cells that have it.
-template <std::size_t d>
-[[nodiscard]] std::vector<HalfFacet> cells_at_facets(CertifiedMesh<d> mesh,
-                                                     std::size_t n_facets);
 
 } // namespace anistar

@@ -3,6 +3,7 @@
 #include "certificate/circumball.h"
 #include "certificate/surface/facet_bulge.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace anistar {
@@ -52,9 +53,10 @@ std::array<SurfaceFacet<3>, 3> surface_facets(const WallStar &star) {
   const std::array<Vector<3>, 3> corners{star.corners[0]->x, star.corners[1]->x,
                                          star.corners[2]->x};
   FacetBulge<3> bulge{};
-  if (star.normals[0])
-    bulge = facet_bulge<3>(corners,
-                           {*star.normals[0], *star.normals[1], *star.normals[2]});
+  const auto is_known = [](const Vector<3> *normal) { return normal != nullptr; };
+  if (std::all_of(star.normals.begin(), star.normals.end(), is_known))
+    bulge =
+        facet_bulge<3>(corners, {*star.normals[0], *star.normals[1], *star.normals[2]});
   std::array<SurfaceFacet<3>, 3> seen;
   for (std::size_t k = 0; k < 3; ++k) {
     seen[k].corners = turned(corners, k);

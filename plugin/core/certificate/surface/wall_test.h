@@ -14,7 +14,8 @@ struct WallStar {
   std::array<const Vertex<3> *, 3> corners;
   /// Of the cells at the facet; the second one is null on the boundary.
   std::array<const Vertex<3> *, 2> apexes;
-  /// Of the surface at the corners, of unit length; null where it is a plane.
+  /// Of the surface at the corners, of unit length; null where it is a plane, or none
+  /// is known.
   std::array<const Vector<3> *, 3> normals{};
 };
 

@@ -8,15 +8,17 @@
 namespace anistar {
 namespace {
 
-/// The height of segment k of a curve over the middle of its chord, on the left.
-double height(const Curve &curve, std::size_t k) {
-  const auto first = static_cast<double>(k);
-  const Vector<2> a = curve.at(first), b = curve.at(first + 1), chord = b - a;
-  const Vector<2> rise = curve.at(first + .5) - .5 * (a + b);
-  return cross(chord, rise) / chord.norm();
-}
+/// Relative to the chord.
+constexpr double straight = 1e-9;
 
 } // namespace
+
+double chord_height(const Curve &curve, double t0, double t1) {
+  const Vector<2> a = curve.at(t0), b = curve.at(t1), chord = b - a;
+  const Vector<2> rise = curve.at(.5 * (t0 + t1)) - .5 * (a + b);
+  const double length = chord.norm(), height = cross(chord, rise) / length;
+  return std::abs(height) <= straight * length ? 0 : height;
+}
 
 std::vector<FacetBulge<2>> facet_bulges(const GeometryInput &input) {
   const Geometry geometry = make_geometry(input, nullptr);
@@ -25,7 +27,8 @@ std::vector<FacetBulge<2>> facet_bulges(const GeometryInput &input) {
     for (std::size_t k = 0; k < curve.n_segments(); ++k)
       if (!curve.is_frozen && !curve.is_straight(k)) {
         const Index a = curve.vertices[k], b = curve.vertices[k + 1];
-        const double h = height(curve, k);
+        const auto first = static_cast<double>(k);
+        const double h = chord_height(curve, first, first + 1);
         of_segment[{a, b}] = {h};
         of_segment[{b, a}] = {-h};
       }

@@ -2,6 +2,7 @@
 
 #include "plane/stars/agreement.h"
 #include "plane/stars/insertion.h"
+#include "plane/stars/seen_curves.h"
 #include "plane/stars/star_mending.h"
 #include "stars/algorithm_2.h"
 #include "stars/certify_all.h"
@@ -24,6 +25,10 @@ constexpr double shortest_split = .8;
           round % rounds_between_moves == rounds_between_moves - 1);
 }
 
+[[nodiscard]] bool is_about_size(Rule rule) {
+  return rule == Rule::facet_size || rule == Rule::size;
+}
+
 /// The rounds of Algorithm 2, and the judge of Pick_valid.
 class Rounds {
 public:
@@ -40,6 +45,12 @@ public:
   [[nodiscard]] const Triangulation<2> &mesh() const { return mesh_; }
   [[nodiscard]] const Background<2> &background() const { return w_.background; }
   [[nodiscard]] std::size_t n_vertices() const { return mesh_.vertices.size(); }
+  [[nodiscard]] SurfaceStars<2> surface_stars() const {
+    SurfaceStars<2> stars{seen_curves(w_), {}};
+    stars.inside = encroaching_vertices<2>(certified(mesh_), stars.facets, run_.threads,
+                                           to_the_end(run_.monitor, 0));
+    return stars;
+  }
   [[nodiscard]] int patience(std::size_t) const { return patience_of_rounds; }
   [[nodiscard]] bool are_rules_everywhere() const { return !relocates_; }
   [[nodiscard]] bool is_starting() const { return is_starting_; }
@@ -53,9 +64,10 @@ public:
         relocates_ &&
         is_moved_after(counts.rounds, failing_fraction(mesh_, known.bits));
     const Rule rule = insert_for_all(bad, counts);
-    // in the pure mode rules 1 to 3 end by packing, and only rule 4 can stall
-    since_best_ += relocates_ || rule == Rule::inconsistency || rule == Rule::kept;
-    is_starting_ = is_starting_ && rule == Rule::size;
+    // in the pure mode the other rules end by packing, and only consistency can stall
+    since_best_ += relocates_ || rule == Rule::facet_inconsistency ||
+                   rule == Rule::inconsistency || rule == Rule::kept;
+    is_starting_ = is_starting_ && is_about_size(rule);
     const Run run = run_.in_round(counts.rounds + 1);
     if (moving)
       (void)agree(w_, run);
@@ -115,6 +127,20 @@ private:
   }
 
   void insert_for(const BadCell<2> &item, ConsistencyCounts &counts) {
+    if (item.is_facet())
+      insert_in(item, counts);
+    else
+      insert_or_snap_valid(item, counts);
+  }
+
+  /// A point of the picking region of an edge: the middle of its curve.
+  void insert_in(const BadCell<2> &item, ConsistencyCounts &counts) {
+    if (split_edge(w_, item.facet) != none)
+      counts.add(item.rule);
+  }
+
+  /// Algorithm 5: a point that encroaches upon a wall becomes a point on the wall.
+  void insert_or_snap_valid(const BadCell<2> &item, ConsistencyCounts &counts) {
     const CounterRandom random(run_.seed, Stream::pick, item.cell, counts.rounds);
     const auto [best, wall] =
         pick_valid<2>(mesh_, w_.background, item, parameters_, random, *this);

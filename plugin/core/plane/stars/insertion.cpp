@@ -11,9 +11,13 @@ constexpr double separation = .4;
 } // namespace
 
 HalfFacet Insertion::encroached(const Vertex<2> &p, Index cell) const {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (const HalfFacet edge(cell, i); encroaches(mesh_, p, edge))
+  for (std::size_t i = 0; i < 3; ++i) {
+    const HalfFacet edge(cell, i);
+    const auto [a, b] = mesh_.facet(edge);
+    if (mesh_.constraint(edge) != none &&
+        encroaches_on_surface(mesh_.vertex(a), mesh_.vertex(b), p))
       return edge;
+  }
   return {};
 }
 

@@ -24,7 +24,8 @@ public:
   /// @returns false when it does not see all of their boundary or comes too near to a
   /// vertex.
   [[nodiscard]] bool gather(const Vertex<2> &p, Index cell);
-  /// A constrained edge of the cell in whose diametral ellipse p lies.
+  /// A constrained edge of the cell that p encroaches upon: it lies in a surface ball
+  /// of one of its ends.
   [[nodiscard]] HalfFacet encroached(const Vertex<2> &p, Index cell) const;
   /// @param radius circumradius up to which hits count
   /// @pre gather(p, ...) was true and nothing changed since.

@@ -6,6 +6,7 @@
 #include "volume/stars/agreement.h"
 #include "volume/stars/star_mending.h"
 #include "volume/stars/vertex_mover.h"
+#include "volume/stars/wall_violations.h"
 
 #include <utility>
 
@@ -105,7 +106,7 @@ public:
   Rounds(Volume &volume, const Run &run, const ConsistencyParameters &parameters,
          const DelaunayBits &known)
       : volume_(volume), mesh_(volume.mesh), run_(run), parameters_(parameters),
-        operator_(volume), insertion_(volume),
+        normals_(volume, run.threads), operator_(volume), insertion_(volume),
         mover_(volume, insertion_, operator_, parameters.sigma_0) {
     progress_.failing = progress_.reference = failing_fraction(mesh_, known.bits);
   }
@@ -113,6 +114,13 @@ public:
   [[nodiscard]] const Triangulation<3> &mesh() const { return mesh_; }
   [[nodiscard]] const Background<3> &background() const { return volume_.background; }
   [[nodiscard]] std::size_t n_vertices() const { return volume_.n_vertices(); }
+  [[nodiscard]] SurfaceStars<3> surface_stars() {
+    normals_ = SurfaceNormals(volume_, run_.threads);
+    SurfaceStars<3> stars{seen_walls(volume_, normals_), {}};
+    stars.inside = encroaching_vertices<3>(certified(mesh_), stars.facets, run_.threads,
+                                           to_the_end(run_.monitor, 0));
+    return stars;
+  }
   [[nodiscard]] int patience(std::size_t n_bad) const {
     return n_bad <= last_failing ? patience_with_last : usual_patience;
   }
@@ -147,7 +155,7 @@ public:
                                             double radius) {
     if (!insertion_.gather(p, std::array{cell}, {.closest = separation}))
       return {};
-    const HalfFacet wall = insertion_.encroached();
+    const HalfFacet wall = insertion_.encroached(normals_);
     if (wall.exists() && !effort_.is_stuck)
       return {{}, wall};
     return {insertion_.score(parameters_.sigma_0, radius), wall};
@@ -158,6 +166,7 @@ private:
   Triangulation<3> &mesh_;
   const Run &run_;
   const ConsistencyParameters &parameters_;
+  SurfaceNormals normals_;
   CavityOperator operator_;
   VolumeInsertion insertion_;
   VertexMover mover_;
@@ -208,12 +217,15 @@ private:
   }
 
   void change(const BadCell<3> &item, ConsistencyCounts &counts) {
-    if (!effort_.moves) {
-      (void)insert_for(item, counts);
+    if (item.is_facet()) {
+      insert_in(item, counts);
+    } else if (!effort_.moves) {
+      (void)insert_or_snap_valid(item, counts);
     } else if (!effort_.inserts_early) {
       if (!move_any(item, counts, 0))
-        (void)insert_for(item, counts);
-    } else if (!move_any(item, counts, fewer_failing) && !insert_for(item, counts)) {
+        (void)insert_or_snap_valid(item, counts);
+    } else if (!move_any(item, counts, fewer_failing) &&
+               !insert_or_snap_valid(item, counts)) {
       (void)move_any(item, counts, 0);
     }
   }
@@ -242,17 +254,25 @@ private:
     return false;
   }
 
-  /// Pick_valid (Algorithm 3) and Insert (Algorithm 1), or the split of a wall that the
-  /// point encroaches upon.
-  bool insert_for(const BadCell<3> &item, ConsistencyCounts &counts) {
+  /// A point of the surface for a bad facet, on its longest edge.
+  void insert_in(const BadCell<3> &item, ConsistencyCounts &counts) {
+    if (run_.monitor.has_room(volume_.n_vertices()) && split(item.facet))
+      counts.add(item.rule);
+  }
+
+  /// Insert_or_snap_valid (Algorithm 5): Pick_valid (Algorithm 3) and Insert (Algorithm
+  /// 1), or a point of the wall that the picked one encroaches upon.
+  bool insert_or_snap_valid(const BadCell<3> &item, ConsistencyCounts &counts) {
     if (!run_.monitor.has_room(volume_.n_vertices()))
       return false;
     const CounterRandom random(run_.seed, Stream::pick, item.cell, counts.rounds);
     const auto [best, wall] =
         pick_valid<3>(mesh_, volume_.background, item, parameters_, random, *this);
     if (!best.exists() || effort_.is_stuck)
-      if (wall.exists() && split(wall, counts))
+      if (wall.exists() && split(wall)) {
+        ++counts.boundary;
         return true;
+      }
     if (!best.exists() || best.score.failing > effort_.allowance ||
         !insertion_.gather(best.p, std::array{best.seed}, {.closest = separation}))
       return false;
@@ -275,7 +295,7 @@ private:
   }
 
   /// Splits the longest edge of a wall, at the best of some of its points.
-  bool split(HalfFacet wall, ConsistencyCounts &counts) {
+  bool split(HalfFacet wall) {
     const Facet<3> t = mesh_.facet(wall);
     Index a = none, b = none;
     double longest = shortest_split;
@@ -303,7 +323,6 @@ private:
       return false;
     if (feature.ridge != none)
       volume_.ridges.split(a, b, v);
-    ++counts.boundary;
     return true;
   }
 

@@ -147,22 +147,15 @@ bool VolumeInsertion::stays(Index a, Index b) const {
   });
 }
 
-HalfFacet VolumeInsertion::encroached() const {
+HalfFacet VolumeInsertion::encroached(const SurfaceNormals &normals) const {
   const Triangulation<3> &mesh = volume_.mesh;
-  const Matrix<3> L = lower_factor<3>(p_.M);
   for (const Outer &outer : outers_) {
-    if (mesh.constraint(outer.facet) == none)
+    const Index patch = mesh.constraint(outer.facet);
+    if (patch == none)
       continue;
-    const auto seen = [&](Index v) -> Vector<3> { // from p, in its metric
-      return L.transpose() * (mesh.vertex(v).x - p_.x);
-    };
-    const Vector<3> a = seen(outer.v[0]), u = seen(outer.v[1]) - a,
-                    w = seen(outer.v[2]) - a;
-    const Vector<3> normal = u.cross(w);
-    const Vector<3> to_centre =
-        (u.squaredNorm() * w.cross(normal) + w.squaredNorm() * normal.cross(u)) /
-        (2 * normal.squaredNorm());
-    if ((a + to_centre).squaredNorm() < to_centre.squaredNorm())
+    WallStar star = wall_star(mesh, normals, outer.v, patch, {none, none});
+    star.apexes[0] = &p_;
+    if (wall_margin(star) > 0)
       return outer.facet;
   }
   return {};

@@ -42,9 +42,9 @@ public:
   /// or a seed cannot be part of its cavity.
   [[nodiscard]] bool gather(const Vertex<3> &p, std::span<const Index> seeds,
                             const EntryRule &rule);
-  /// A constrained facet of the cavity that the point encroaches upon: it lies in the
-  /// smallest M_p-ball through its vertices.
-  [[nodiscard]] HalfFacet encroached() const;
+  /// A constrained facet of the cavity that the point encroaches upon: it lies in a
+  /// surface ball of one of its vertices.
+  [[nodiscard]] HalfFacet encroached(const SurfaceNormals &normals) const;
   /// @param sigma_0 cells of less sliverity are slivers
   /// @param radius circumradius up to which they count
   [[nodiscard]] PointScore score(double sigma_0, double radius);

@@ -1,10 +1,14 @@
 #pragma once
 // Which walls of a volume mesh are not in the surface stars of their vertices.
 
-#include "certificate/certificate.h"
+#include "certificate/surface/surface_stars.h"
 #include "volume/stars/facet_margins.h"
 
 namespace anistar {
+
+/// The walls of a mesh as the surface stars of their vertices see them, each once.
+[[nodiscard]] std::vector<SeenFacet<3>> seen_walls(const Volume &volume,
+                                                   const SurfaceNormals &normals);
 
 /// A wall, and a vertex inside of a surface ball of it that it can reach (see
 /// certificate/surface/surface_stars.h).

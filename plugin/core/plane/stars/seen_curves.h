@@ -1,0 +1,12 @@
+#pragma once
+// The edges of curves as the surface stars of their ends see them.
+
+#include "certificate/surface/surface_stars.h"
+#include "plane/mesh/workspace.h"
+
+namespace anistar {
+
+/// Each once. The curves may ask a projection of the user.
+[[nodiscard]] std::vector<SeenFacet<2>> seen_curves(const Workspace &w);
+
+} // namespace anistar

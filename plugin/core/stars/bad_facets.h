@@ -1,0 +1,28 @@
+#pragma once
+// The facets of surfaces that break a rule of Algorithm 4, for meshes of triangles and
+// of tetrahedra.
+
+#include "certificate/surface/surface_stars.h"
+#include "stars/bad_cells.h"
+
+namespace anistar {
+
+/// The facets of the surfaces of a mesh, and in which surface stars they are.
+template <std::size_t d> struct SurfaceStars {
+  std::vector<SeenFacet<d>> facets;
+  std::vector<std::array<Index, d>> inside; ///< see encroaching_vertices
+
+  [[nodiscard]] bool is_consistent(std::size_t facet) const;
+  /// Facets that are not in the surface stars of all their vertices.
+  [[nodiscard]] std::size_t n_failing() const;
+};
+
+/// Those that break a rule in a surface star that they are in, the first rule first.
+/// @param everywhere the other rules also for facets that are consistent
+template <std::size_t d>
+[[nodiscard]] std::vector<BadCell<d>>
+bad_facets(const Triangulation<d> &mesh, const Background<d> &background,
+           const SurfaceStars<d> &surface, const ConsistencyParameters &parameters,
+           bool everywhere);
+
+} // namespace anistar
