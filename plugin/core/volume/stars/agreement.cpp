@@ -1,6 +1,7 @@
 #include "volume/stars/agreement.h"
 
 #include "volume/mesh/slab_team.h"
+#include "volume/stars/agreement_rounds.h"
 #include "volume/stars/facet_repair.h"
 #include "volume/stars/relocation.h"
 
@@ -9,25 +10,21 @@
 namespace anistar {
 namespace {
 
-constexpr int max_rounds = 60;
 /// The first rounds make directed steps, which mend nine facets of ten, and then every
 /// so many: what is changed in between lets some more succeed.
 constexpr int n_directed = 3, directed_period = 3;
-/// Rounds that may pass without clearly fewer failing facets; more when only a few are
-/// left, for a round costs nothing then.
-constexpr int patience = 9, patience_with_few = 30;
-constexpr std::size_t few = 100;
-constexpr double least_reduction = .05;
 /// The radius of the random places in the rounds between directed ones.
 constexpr double radii[] = {.15, .07};
+/// The last failing facets get so many places a vertex; in every so many rounds the
+/// vertices around them make room: what is left resists because others are near.
+constexpr std::size_t last_failing = 30;
+constexpr int last_places = 24, room_period = 3;
 /// Every so many rounds, but for the directed ones, collapses and insertions are tried;
 /// where many facets fail not at once: they cost far more than a move, and vertices.
 constexpr int first_repair = 9, repair_period = 5;
 /// A facet that resists in these rounds makes a vertex wander, by this much: where
 /// metrics vary a lot the rest is stuck without.
 constexpr double wandering_radius = .1;
-/// So many trials are made whatever the number of cells.
-constexpr double fewest_trials = 30000;
 /// What a round takes for each failing facet, about.
 constexpr std::size_t directed_trials = 3, random_trials = 25;
 /// Re-insertion finds most of what it can in the first round: it is tried in every so
@@ -45,9 +42,6 @@ constexpr std::size_t calls_between_looks = 64;
 constexpr double nearly_agreed = .005, mostly = .9;
 constexpr double shortest_unit_edge = .7, longest_unit_edge = 1.42;
 constexpr std::size_t sampled_cells = 4096;
-/// With no more failing facets than this, and one for so many cells, it would be a pity
-/// to stop.
-constexpr std::size_t nearly_none = 20, cells_per_facet_left = 2000;
 
 /// What the threads do side by side.
 struct MoveCounts {
@@ -86,40 +80,6 @@ private:
   const Move &move_;
 };
 
-/// When the rounds end.
-class Effort {
-public:
-  Effort(const AgreementEffort &effort, std::size_t n_cells, std::size_t failing)
-      : patience_(effort.patience),
-        affordable_(effort.patience *
-                    (effort.trials_per_cell * double(n_cells) + fewest_trials)),
-        left_(nearly_none + n_cells / cells_per_facet_left), fewest_(failing) {}
-
-  [[nodiscard]] int last_round() const { return patience_ * max_rounds; }
-  /// Why no round follows on one that leaves so many failing facets.
-  /// @param trials made so far
-  /// @param per_facet those that the next round takes
-  [[nodiscard]] std::optional<AgreementStop>
-  stop(std::size_t failing, std::size_t trials, std::size_t per_facet) {
-    ++since_;
-    if (double(failing) < (1 - least_reduction) * double(fewest_)) {
-      fewest_ = failing;
-      since_ = 0;
-    }
-    if (failing > left_ && double(trials + per_facet * failing) > affordable_)
-      return AgreementStop::trials;
-    if (since_ >= patience_ * (failing <= few ? patience_with_few : patience))
-      return AgreementStop::stalled;
-    return {};
-  }
-
-private:
-  int patience_;
-  double affordable_; ///< trials
-  std::size_t left_, fewest_;
-  int since_ = 0; ///< rounds since there were clearly fewer
-};
-
 class VolumeAgreement {
 public:
   VolumeAgreement(Volume &volume, const Run &run)
@@ -133,7 +93,7 @@ public:
     state_.margins.fill(run_.threads);
     scan();
     counts_.before = failing_.size();
-    counts_.stop = reduce(Effort(effort, mesh_.n_cells(), failing_.size()));
+    counts_.stop = reduce(RoundLimits(effort, mesh_.n_cells(), failing_.size()));
     polish_at_last();
     counts_.after = failing_.size();
     counts_.trials += relocation_.trials();
@@ -208,22 +168,22 @@ private:
   [[nodiscard]] static bool is_directed(int round) {
     return round < n_directed || round % directed_period == 0;
   }
-  AgreementStop reduce(Effort effort) {
-    for (int round = 0; round < effort.last_round(); ++round) {
+  AgreementStop reduce(RoundLimits limits) {
+    for (int round = 0; round < limits.last_round(); ++round) {
       if (failing_.empty())
         return AgreementStop::agreed;
       ++counts_.rounds;
-      const double fraction = static_cast<double>(round) / effort.last_round();
+      const double fraction = static_cast<double>(round) / limits.last_round();
       const bool is_going =
           is_directed(round) ? step_all(round) : visit_failing(round, fraction);
       update_list();
       if (!is_going)
         return AgreementStop::interrupted;
       if (const auto stop =
-              effort.stop(failing_.size(), n_trials(),
+              limits.stop(failing_.size(), n_trials(),
                           is_directed(round + 1) ? directed_trials : random_trials))
         return *stop;
-      if (round + 1 == n_directed && failing_.size() > few)
+      if (round + 1 == n_directed && failing_.size() > few_failing_facets)
         (void)polish(start_);
     }
     return failing_.empty() ? AgreementStop::agreed : AgreementStop::rounds;
@@ -286,8 +246,9 @@ private:
   }
 
   bool visit_failing(int round, double fraction) {
-    const bool is_repairing = (round >= first_repair || failing_.size() <= few) &&
-                              round % repair_period == repair_period - 1;
+    const bool is_repairing =
+        (round >= first_repair || failing_.size() <= few_failing_facets) &&
+        round % repair_period == repair_period - 1;
     for (std::size_t k = 0; k < failing_.size(); ++k) {
       if (!go_on(fraction))
         return false;
@@ -304,7 +265,10 @@ private:
   }
 
   void mend(HalfFacet h, int round, CounterRandom &random) {
-    const double radius = radii[round % directed_period - 1];
+    const bool is_among_last = failing_.size() <= last_failing;
+    RandomPlaces places{radii[round % directed_period - 1]};
+    if (is_among_last)
+      places.n = last_places;
     // a swap that only exchanges failing facets could be taken back for ever
     if (repair_.swap(h, round % 2 == 0 ? FacetRepair::Demand::lower_cost
                                        : FacetRepair::Demand::fewer_failing)) {
@@ -317,11 +281,30 @@ private:
       const Index v = vertices[(first + k) % n];
       if (round % reinsertion_period == 0)
         counts_.reinsertions += repair_.reinsert(v);
-      counts_.moves += relocation_.relocate(v, radius, random);
+      counts_.moves += relocation_.relocate(v, places, random);
       if (!still_fails(h))
         return;
     }
     counts_.moves += relocation_.wander(vertices[first], wandering_radius, random);
+    if (is_among_last && round % room_period == 1)
+      make_room(vertices, places, random);
+  }
+  /// Of the vertices that have an edge with those that decide.
+  void make_room(const DecidingVertices &deciding, const RandomPlaces &places,
+                 CounterRandom &random) {
+    std::vector<Index> around, star;
+    volume_.open_vertices();
+    for (Index v : deciding)
+      (void)volume_.mark_vertex(v);
+    for (Index v : deciding) {
+      star_of(volume_, v, star);
+      for (Index c : star)
+        for (Index u : mesh_.at(c))
+          if (volume_.mark_vertex(u))
+            around.push_back(u);
+    }
+    for (Index u : around)
+      counts_.moves += relocation_.make_room(u, places, random);
   }
 
   void polish_at_last() {

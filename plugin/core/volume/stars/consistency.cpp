@@ -4,9 +4,9 @@
 #include "stars/certify_all.h"
 #include "volume/mesh/shell.h"
 #include "volume/stars/agreement.h"
+#include "volume/stars/far_violations.h"
 #include "volume/stars/star_mending.h"
 #include "volume/stars/vertex_mover.h"
-#include "volume/stars/wall_violations.h"
 
 #include <utility>
 

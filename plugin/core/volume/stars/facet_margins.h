@@ -24,8 +24,16 @@ using DecidingStar = std::variant<FacetStar, WallStar>;
 
 [[nodiscard]] DecidingStar deciding_star(const Triangulation<3> &mesh,
                                          const SurfaceNormals &normals, HalfFacet h);
-/// See facet_margin and wall_margin.
-[[nodiscard]] double margin_of(const DecidingStar &star);
+/// See facet_margin.
+[[nodiscard]] inline double margin_of(const FacetStar &star) {
+  return facet_margin(star);
+}
+/// See wall_margin; on curved surfaces somewhat more, for the normals that others find
+/// for the finished mesh are not quite these.
+[[nodiscard]] double margin_of(const WallStar &star);
+[[nodiscard]] inline double margin_of(const DecidingStar &star) {
+  return std::visit([](const auto &one) { return margin_of(one); }, star);
+}
 
 /// The vertices that decide about a facet: its own and those of its cells beside it.
 class DecidingVertices {
@@ -86,7 +94,9 @@ private:
   const SurfaceNormals &normals_;
   std::vector<std::array<float, 4>> known_;
 
-  void look(HalfFacet h) { put(h, as_margin(margin_of(deciding_star(mesh_, normals_, h)))); }
+  void look(HalfFacet h) {
+    put(h, as_margin(margin_of(deciding_star(mesh_, normals_, h))));
+  }
 };
 
 /// What agreement makes small. The failing facets count, but a sum of whole numbers has

@@ -45,11 +45,11 @@ AgreementCost FacetRepair::cost_of_proposal() const {
       star[k] = &volume_.mesh.vertex(v[k]);
     cost.add_facet(facet_margin(star));
   });
-  operator_.for_new_walls(
-      [&](const Facet<3> &facet, Index patch, std::array<Index, 2> apexes) {
-        cost.add_facet(wall_margin(
-            wall_star(volume_.mesh, view_.state.normals, facet, patch, apexes)));
-      });
+  operator_.for_new_walls([&](const Facet<3> &facet, Index patch,
+                              std::array<Index, 2> apexes) {
+    cost.add_facet(
+        margin_of(wall_star(volume_.mesh, view_.state.normals, facet, patch, apexes)));
+  });
   return cost;
 }
 

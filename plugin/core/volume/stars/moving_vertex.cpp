@@ -86,7 +86,8 @@ void MovingVertex::put_trial_in(WallStar &star) const {
   std::replace(star.corners.begin(), star.corners.end(), from, to);
   const auto at_home = view_.state.normals.at(v_);
   for (std::size_t n = 0; n < normals_.size(); ++n) {
-    const Vector<3> *const before = &at_home[n].along, *const tried = &normals_[n].along;
+    const Vector<3> *const before = &at_home[n].along, *const tried =
+                                                           &normals_[n].along;
     std::replace(star.normals.begin(), star.normals.end(), before, tried);
   }
 }
@@ -126,8 +127,7 @@ double MovingVertex::length_penalty(const Vertex<3> &at) const {
 /// Puts the vertex there, with the metric that it has at home.
 bool MovingVertex::put(const Vector<3> &x) {
   trial_.place(x);
-  return is_in_range<3>(trial_.vertex().x) && trial_.is_positive() &&
-         trial_.keeps_surfaces();
+  return is_in_range<3>(trial_.vertex().x) && trial_.is_positive();
 }
 
 bool MovingVertex::place(const Vector<3> &x) {
@@ -146,7 +146,7 @@ bool MovingVertex::place(const Vector<3> &x, const ShapeDemand &demand) {
   if (!demand.is_met_by(trial_.measure()))
     return false;
   trial_.take_metric();
-  return demand.is_met_by(trial_.measure());
+  return demand.is_met_by(trial_.measure()) && trial_.keeps_surfaces();
 }
 
 std::optional<PlaceScore> MovingVertex::evaluate(double floor, double limit) {
@@ -158,6 +158,8 @@ std::optional<PlaceScore> MovingVertex::evaluate(double floor, double limit) {
   for (std::size_t k = 0; k < star_.size(); ++k)
     score.cost.add_cell(static_cast<double>(shapes.quality(k)));
   score.lengths = length_penalty(trial_.vertex());
+  if (score.total() >= limit)
+    return {};
   take_normals();
   margins_.clear();
   int failing_facets = 0;
@@ -170,7 +172,8 @@ std::optional<PlaceScore> MovingVertex::evaluate(double floor, double limit) {
   }
   if (failing_facets > failing_facets_ && !view_.state.far.empty())
     return {};
-  return score;
+  // this takes longer than all the rest
+  return trial_.keeps_surfaces() ? std::optional(score) : std::nullopt;
 }
 
 bool MovingVertex::disagrees_no_more(const PlaceScore &before) {

@@ -53,10 +53,11 @@ public:
   [[nodiscard]] PlaceScore score_here() const;
 
   /// Tries x, or where x goes on the surface or ridge of the vertex. @returns whether
-  /// it may be there.
+  /// all cells have a volume there.
   [[nodiscard]] bool place(const Vector<3> &x);
   /// What the place is worth; nothing as soon as the total is not below the limit or a
-  /// cell is below the floor. Facets do not fail in exchange for far violations.
+  /// cell is below the floor; nor where surfaces lose their shape. Facets do not fail
+  /// in exchange for far violations.
   [[nodiscard]] std::optional<PlaceScore> evaluate(double floor, double limit);
   /// The same where the qualities there are to reach a floor and a sum.
   [[nodiscard]] bool place(const Vector<3> &x, const ShapeDemand &demand);
@@ -98,7 +99,7 @@ private:
   std::vector<TestedFacet> facets_, safe_;
   std::vector<SurfaceNormals::Normal> normals_; ///< at the place that is tried
   std::vector<double> margins_;                 ///< there
-  int failing_facets_ = 0;      ///< where v is in the mesh
+  int failing_facets_ = 0;                      ///< where v is in the mesh
   TriedPlace best_;
   std::vector<SurfaceNormals::Normal> best_normals_;
   std::vector<double> best_margins_;

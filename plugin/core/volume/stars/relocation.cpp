@@ -14,7 +14,6 @@ constexpr int max_steps = 2;
 constexpr double longest_step = .35, shortest_step = 1e-4;
 constexpr double step_fractions[] = {1, .5};
 
-constexpr int n_candidates = 6;
 /// Random places lie within these fractions of the radius, one after another: most
 /// disagreements need a small move, some a large one.
 constexpr double radius_fractions[] = {1, .4, .15};
@@ -73,21 +72,34 @@ bool VolumeRelocation::step_once() {
   return false;
 }
 
-bool VolumeRelocation::relocate(Index v, double radius, CounterRandom &random) {
+bool VolumeRelocation::relocate(Index v, const RandomPlaces &places,
+                                CounterRandom &random) {
   if (!vertex_.gather(v))
     return false;
   const PlaceScore before = vertex_.score_here();
-  if (before.cost.failing == 0 && before.cost.shortfall <= 0)
+  return (before.cost.failing > 0 || before.cost.shortfall > 0) &&
+         try_all(places, before, random);
+}
+
+bool VolumeRelocation::make_room(Index v, const RandomPlaces &places,
+                                 CounterRandom &random) {
+  if (!vertex_.gather(v))
     return false;
+  const PlaceScore before = vertex_.score_here();
+  return before.cost.nearness > 0 && try_all(places, before, random);
+}
+
+bool VolumeRelocation::try_all(const RandomPlaces &places, const PlaceScore &before,
+                               CounterRandom &random) {
   const Matrix<3> L = lower_factor<3>(vertex_.home().M);
   const double floor = floor_of(before.quality_min);
   const Vector<3> start = vertex_.home().x;
   Vector<3> best = start;
   double best_total = before.total() - least_gain;
   bool found = false;
-  for (int k = 0; k < n_candidates; ++k) {
+  for (int k = 0; k < places.n; ++k) {
     const Vector<3> step =
-        in_space(L, radius * radius_fractions[k % 3] * random_in_ball(random));
+        in_space(L, places.radius * radius_fractions[k % 3] * random_in_ball(random));
     if (!vertex_.place((k < 3 ? start : best) + step))
       continue;
     const std::optional<PlaceScore> score = vertex_.evaluate(floor, best_total);

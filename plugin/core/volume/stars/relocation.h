@@ -6,6 +6,11 @@
 
 namespace anistar {
 
+struct RandomPlaces {
+  double radius; ///< the metric distance within which they lie
+  int n = 6;
+};
+
 /// Moves vertices to the best of some trial places. Moves on surfaces and ridges slide
 /// along them.
 class VolumeRelocation {
@@ -17,9 +22,11 @@ public:
   /// @returns whether there was one; if not, v is stuck until something around it
   /// changes.
   bool step(Index v);
-  /// Random places within this metric distance; @returns whether one is better by
-  /// AgreementCost and lengths.
-  bool relocate(Index v, double radius, CounterRandom &random);
+  /// Random places for a vertex of a failing facet or a flat cell; @returns whether one
+  /// is better by AgreementCost and lengths.
+  bool relocate(Index v, const RandomPlaces &places, CounterRandom &random);
+  /// The same for a vertex whose facets only nearly fail: then others may come nearer.
+  bool make_room(Index v, const RandomPlaces &places, CounterRandom &random);
   /// A random place where no more than one more facet fails, to leave a local minimum.
   bool wander(Index v, double radius, CounterRandom &random);
   /// A step towards better shapes at which no more facets fail: straight to the ideal
@@ -35,6 +42,8 @@ private:
   StepBounds bounds_;
 
   [[nodiscard]] bool step_once();
+  [[nodiscard]] bool try_all(const RandomPlaces &places, const PlaceScore &before,
+                             CounterRandom &random);
   [[nodiscard]] bool polish_beside(const Vector<3> &wanted, const ShapeDemand &demand,
                                    const PlaceScore &before);
 };

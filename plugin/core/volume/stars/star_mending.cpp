@@ -4,7 +4,6 @@
 #include "stars/certify_all.h"
 #include "stars/rules.h"
 #include "volume/stars/relocation.h"
-#include "volume/stars/wall_violations.h"
 
 namespace anistar {
 namespace {
@@ -89,10 +88,9 @@ private:
       const std::size_t first = random.below(vertices.size());
       for (std::size_t k = 0; k < vertices.size() && is_violated(violation); ++k) {
         const Index v = vertices[(first + k) % vertices.size()];
-        moves +=
-            v != none &&
-            (relocation_.step(v) ||
-             (round >= first_random && relocation_.relocate(v, random_radius, random)));
+        moves += v != none && (relocation_.step(v) ||
+                               (round >= first_random &&
+                                relocation_.relocate(v, {random_radius}, random)));
       }
     }
     return moves;

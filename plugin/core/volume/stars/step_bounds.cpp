@@ -90,10 +90,10 @@ FacetSlope StepBounds::slope_of(const WallStar &star, const Vertex<3> *moved) co
   WallStar changed = star;
   std::replace(changed.corners.begin(), changed.corners.end(), moved, there);
   std::replace(changed.apexes.begin(), changed.apexes.end(), moved, there);
-  FacetSlope slope{wall_margin(star), Vector<3>::Zero()};
+  FacetSlope slope{margin_of(star), Vector<3>::Zero()};
   for (int k = 0; k < 3; ++k) {
     beside.x = moved->x + difference_step * axes_.col(k);
-    slope.gradient[k] = (wall_margin(changed) - slope.margin) / difference_step;
+    slope.gradient[k] = (margin_of(changed) - slope.margin) / difference_step;
   }
   return slope;
 }

@@ -47,7 +47,8 @@ private:
   std::vector<LinearBound> bounds_;
   std::array<std::vector<double>, 3> quality_slopes_;
 
-  [[nodiscard]] FacetSlope slope_of(const FacetStar &star, const Vertex<3> *moved) const;
+  [[nodiscard]] FacetSlope slope_of(const FacetStar &star,
+                                    const Vertex<3> *moved) const;
   [[nodiscard]] FacetSlope slope_of(const WallStar &star, const Vertex<3> *moved) const;
 };
 

@@ -57,8 +57,8 @@ SurfaceNormals::SurfaceNormals(const Volume &volume, int threads)
   parallel_ranges(corners.size(), threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       const auto &[v, patch, of_wall] = corners[k];
-      normals_[k] = {
-          patch, volume.surface.normal(patch, volume.mesh.vertex(v).x, of_wall)};
+      normals_[k] = {patch,
+                     volume.surface.normal(patch, volume.mesh.vertex(v).x, of_wall)};
     }
   });
   for (const CurvedCorner &corner : corners)

@@ -1,4 +1,4 @@
-#include "volume/stars/wall_violations.h"
+#include "volume/stars/far_violations.h"
 
 #include <algorithm>
 
