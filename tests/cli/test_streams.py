@@ -48,7 +48,7 @@ def test_closed_streams_take_nothing_and_spoil_nothing(folder, closed):
     assert ("out.vtu" in done.stdout) == (closed == "2>&-")
     mesh, fields = anistar.read("out.vtu")
     assert anistar.validate(mesh, anistar.read("in.vtu")[0]) == []
-    assert set(fields) == {"u", "simplex_ok", "star_ok"}
+    assert set(fields) == {"u", "simplex_ok", "star_ok", "surface_star_ok"}
 
 
 def test_an_error_never_goes_to_stdout(folder):

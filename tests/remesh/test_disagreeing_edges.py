@@ -12,14 +12,23 @@ from anistar.remeshing.remesh import RemeshOptions, remesh
 
 
 def disagreeing(mesh, M):
-    """Count the edges that one of their four vertices would flip, walls left out."""
+    """Count the edges that one of their four vertices would flip, and walls seen too closely."""
     walls = {tuple(sorted(facet)) for facet in mesh.facets.tolist()}
     apexes = {}
     for cell in mesh.cells.tolist():
         for a, b, c in (cell, cell[1:] + cell[:1], cell[2:] + cell[:2]):
             apexes.setdefault((min(a, b), max(a, b)), []).append((a, b, c))
     inner = [sides for edge, sides in apexes.items() if len(sides) == 2 and edge not in walls]
-    return sum(_would_flip(mesh.points, M, *first, second[2]) for first, second in inner)
+    flipped = sum(_would_flip(mesh.points, M, *first, second[2]) for first, second in inner)
+    return flipped + sum(
+        any(_is_obtuse(mesh.points, M, *side) for side in apexes[edge]) for edge in walls
+    )
+
+
+def _is_obtuse(points, M, a, b, c):
+    """Whether c sees the edge ab at an obtuse angle, in the metric of one of its ends."""
+    u, w = points[a] - points[c], points[b] - points[c]
+    return any(u @ M[v] @ w < -1e-12 * np.sqrt((u @ M[v] @ u) * (w @ M[v] @ w)) for v in (a, b))
 
 
 def _would_flip(points, M, a, b, c, e):

@@ -4,6 +4,7 @@ import functools
 
 import numpy as np
 import pytest
+from certificate import surface_balls
 from meshes import certified_anew, cube, two_region_cube
 from remesh3d.domains import cube_with_sheet, rotated, turning, uniform
 from remesh3d.test_curved import ball
@@ -161,7 +162,7 @@ def test_a_callback_may_end_it():
 
 
 def failing_facets(mesh, metric):
-    """Facets between two cells, not in `mesh.facets`, with a positive margin."""
+    """Facets between two cells with a positive margin, and walls with an apex in a ball."""
     walls = {tuple(sorted(t)) for t in mesh.facets.tolist()}
     sides = {}
     for cell in mesh.cells.tolist():
@@ -173,6 +174,12 @@ def failing_facets(mesh, metric):
         if key not in walls:
             five = [*cells[0], cells[1][3]]
             n += _core_for_tests.facet_margin(mesh.points[five], metric[five]) > 0
+    for facet in mesh.facets:
+        apexes = mesh.points[[cell[3] for cell in sides[tuple(sorted(facet.tolist()))]]]
+        n += any(
+            (surface_balls.sides(metric[v], mesh.points[np.roll(facet, -k)], 0.0, apexes) < 0).any()
+            for k, v in enumerate(facet)
+        )
     return n
 
 

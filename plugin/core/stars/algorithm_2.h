@@ -123,7 +123,7 @@ in_order_of_rules(const std::vector<BadCell<d>> &facets,
 /// star is Delaunay in its own metric, or a bound ends them.
 ///
 /// @tparam Rounds the changes of one dimension: mesh(), background(), n_vertices();
-/// `d`, `max_rounds`; patience(n_bad); are_rules_everywhere(): the other rules also for
+/// `d`, `max_rounds`; patience(n_bad); are_rules_everywhere(): other rules also for
 /// cells that are consistent; treat(bad, counts, known): one round, after which `known`
 /// is true of the mesh again; note(failing, best): hears the part of the cells that
 /// fails after a round, and in the best mesh before; surface_stars(): the facets of its
@@ -162,11 +162,10 @@ insert_until_consistent(Rounds &rounds, const Run &run,
   std::optional<Best> best(seen(failing));
   may_grow_from_here();
   for (counts.rounds = 0;; ++counts.rounds) {
-    const std::vector<BadCell<d>> bad =
-        in_order_of_rules(bad_facets<d>(rounds.mesh(), rounds.background(), surface,
-                                        parameters, rounds.are_rules_everywhere()),
-                          bad_cells<d>(rounds.mesh(), rounds.background(), known.bits,
-                                       parameters, rounds.are_rules_everywhere()));
+    const std::vector<BadCell<d>> bad = in_order_of_rules(
+        bad_facets<d>(rounds.mesh(), rounds.background(), surface, parameters),
+        bad_cells<d>(rounds.mesh(), rounds.background(), known.bits, parameters,
+                     rounds.are_rules_everywhere()));
     bounds.patience = rounds.patience(bad.size());
     counts.stop = bounds.stop(bad.empty(), counts.rounds, rounds.rounds_without_gain(),
                               rounds.n_vertices(), run.monitor);

@@ -17,10 +17,11 @@ double shortest_edge(const SymmetricTensor<d> &M, const SurfaceFacet<d> &facet) 
   return std::sqrt(least);
 }
 
-/// The first rule that a facet breaks in the surface star of its vertex k.
+/// The first rule that an inconsistent facet breaks in the surface star of its vertex
+/// k.
 template <std::size_t d>
 Rule broken_rule(const Triangulation<d> &mesh, const Background<d> &background,
-                 const SeenFacet<d> &facet, std::size_t k, bool is_consistent,
+                 const SeenFacet<d> &facet, std::size_t k,
                  const ConsistencyParameters &parameters) {
   const Index v = facet.vertices[k];
   const SymmetricTensor<d> &M = mesh.vertex(v).M;
@@ -33,7 +34,7 @@ Rule broken_rule(const Triangulation<d> &mesh, const Background<d> &background,
     if (ball.radius > parameters.rho_0 * shortest_edge<d>(M, facet.seen[k]))
       return Rule::facet_radius_edge;
   }
-  return is_consistent ? Rule::kept : Rule::facet_inconsistency;
+  return Rule::facet_inconsistency;
 }
 
 } // namespace
@@ -53,12 +54,10 @@ template <std::size_t d> std::size_t SurfaceStars<d>::n_failing() const {
 template <std::size_t d>
 std::vector<BadCell<d>>
 bad_facets(const Triangulation<d> &mesh, const Background<d> &background,
-           const SurfaceStars<d> &surface, const ConsistencyParameters &parameters,
-           bool everywhere) {
+           const SurfaceStars<d> &surface, const ConsistencyParameters &parameters) {
   std::vector<BadCell<d>> bad;
   for (std::size_t f = 0; f < surface.facets.size(); ++f) {
-    const bool is_consistent = surface.is_consistent(f);
-    if (is_consistent && !everywhere)
+    if (surface.is_consistent(f))
       continue;
     const SeenFacet<d> &facet = surface.facets[f];
     const auto &inside = surface.inside[f];
@@ -69,15 +68,13 @@ bad_facets(const Triangulation<d> &mesh, const Background<d> &background,
     for (std::size_t k = 0; k < d; ++k) {
       if (is_in_a_star && inside[k] != none)
         continue; // not in this star, but in another one
-      const Rule rule =
-          broken_rule<d>(mesh, background, facet, k, is_consistent, parameters);
-      if (rule != Rule::kept && (found.rule == Rule::kept || rule < found.rule)) {
+      const Rule rule = broken_rule<d>(mesh, background, facet, k, parameters);
+      if (found.rule == Rule::kept || rule < found.rule) {
         found.rule = rule;
         found.star = facet.vertices[k];
       }
     }
-    if (found.rule != Rule::kept)
-      bad.push_back(found);
+    bad.push_back(found);
   }
   std::stable_sort(
       bad.begin(), bad.end(),
@@ -90,10 +87,10 @@ template struct SurfaceStars<3>;
 template std::vector<BadCell<2>> bad_facets(const Triangulation<2> &,
                                             const Background<2> &,
                                             const SurfaceStars<2> &,
-                                            const ConsistencyParameters &, bool);
+                                            const ConsistencyParameters &);
 template std::vector<BadCell<3>> bad_facets(const Triangulation<3> &,
                                             const Background<3> &,
                                             const SurfaceStars<3> &,
-                                            const ConsistencyParameters &, bool);
+                                            const ConsistencyParameters &);
 
 } // namespace anistar

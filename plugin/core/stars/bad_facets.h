@@ -17,12 +17,11 @@ template <std::size_t d> struct SurfaceStars {
   [[nodiscard]] std::size_t n_failing() const;
 };
 
-/// Those that break a rule in a surface star that they are in, the first rule first.
-/// @param everywhere the other rules also for facets that are consistent
+/// Of those that are not in the surface stars of all their vertices, the rules that
+/// they break in a star that they are in; the first rule first.
 template <std::size_t d>
 [[nodiscard]] std::vector<BadCell<d>>
 bad_facets(const Triangulation<d> &mesh, const Background<d> &background,
-           const SurfaceStars<d> &surface, const ConsistencyParameters &parameters,
-           bool everywhere);
+           const SurfaceStars<d> &surface, const ConsistencyParameters &parameters);
 
 } // namespace anistar

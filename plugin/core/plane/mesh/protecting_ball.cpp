@@ -50,7 +50,8 @@ bool ProtectingBall::gather(Index v) {
   return true;
 }
 
-/// The stars of the legs have edges in common, which count once.
+/// The stars of the legs have edges in common, which count once. Those of curves do not
+/// count: between the legs of a sharp corner a shell would shrink for them.
 void ProtectingBall::gather_edges() {
   edges_.clear();
   for (const Leg &leg : legs_)
@@ -58,7 +59,8 @@ void ProtectingBall::gather_edges() {
       const HalfFacet other = w_.mesh.opposite(edge);
       const HalfFacet first =
           other.exists() && other.cell() < edge.cell() ? other : edge;
-      if (std::find(edges_.begin(), edges_.end(), first) == edges_.end())
+      if (w_.mesh.constraint(first) == none &&
+          std::find(edges_.begin(), edges_.end(), first) == edges_.end())
         edges_.push_back(first);
     });
 }

@@ -14,6 +14,10 @@ const double unit_excess = elementary::log(longest_unit) - margin;
 /// Lengths up to here, and from its inverse on, are: most are, and need no logarithm.
 constexpr double surely_free = 1.37;
 
+/// An edge between two cells counts for more than all edges of curves at a star: between
+/// the legs of a sharp corner some of these cannot agree.
+constexpr int inner_weight = 16;
+
 /// A move may shrink a cell of the star to this fraction of its area.
 constexpr double smallest_area = .05;
 
@@ -51,7 +55,11 @@ bool PlaneTrial::may_move_to(const Vector<2> &x) const {
 
 int PlaneTrial::count_disagreeing() const {
   int n = 0;
-  for_each_edge([&](HalfFacet e) { n += disagrees(mesh_, e); });
+  for_each_edge([&](HalfFacet e) {
+    const bool is_inner = mesh_.constraint(e) == none;
+    if ((is_inner || edges_ == Edges::all) && disagrees(mesh_, e))
+      n += is_inner ? inner_weight : 1;
+  });
   return n;
 }
 

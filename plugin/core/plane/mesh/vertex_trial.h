@@ -8,7 +8,7 @@ namespace anistar {
 
 /// What a star is judged by when its vertex is moved for agreement.
 struct StarScore {
-  int disagreeing = 0; ///< edges of the star and of its link
+  int disagreeing = 0; ///< see PlaneTrial::count_disagreeing
   double quality = 1;
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
   double longest_at_end = 0; ///< in the metric of one end of an edge
@@ -34,6 +34,10 @@ struct Place {
 class PlaneTrial {
 public:
   explicit PlaneTrial(Workspace &w) : w_(w), mesh_(w.mesh) {}
+
+  /// Which edges count when they disagree.
+  enum class Edges { inner, all };
+  void count(Edges edges) { edges_ = edges; }
 
   /// Takes up a vertex where it is.
   void gather(Index v) {
@@ -63,6 +67,8 @@ public:
 
   /// What the star is worth as it is.
   [[nodiscard]] StarScore score() const;
+  /// The edges of the star and of its link that disagree, those between two cells with
+  /// a weight.
   [[nodiscard]] int count_disagreeing() const;
   /// Whether an edge of the star is not a unit edge: a quick look before score().
   [[nodiscard]] bool has_excess() const;
@@ -88,6 +94,7 @@ public:
 private:
   Workspace &w_;
   Triangulation<2> &mesh_;
+  Edges edges_ = Edges::all;
   Index v_ = none;
   Place from_{};
   std::vector<HalfFacet> star_;

@@ -48,6 +48,7 @@ public:
         own_(std::make_unique<Legaliser>(w.mesh)), relocator_(w, *own_, seed),
         move_(move) {}
 
+  void heed(Relocator::Edges edges) { relocator_.heed(edges); }
   bool visit(Index v, const VertexRange &range) { return move_(relocator_, v, range); }
   void leave(std::size_t block) {
     total_.take_counts(*own_);
@@ -72,14 +73,10 @@ public:
 
   AgreementCounts run() {
     scan();
-    bool going = true;
-    for (int pass = 0; going && pass < max_agreement_passes && work_.size() > 0; ++pass)
-      going = visit(work_.take(), double(pass) / max_agreement_passes,
-                    [pass](Relocator &relocator, Index v, const VertexRange &range) {
-                      return relocator.relocate(v, pass, range);
-                    });
-    if (going && walk_on_plateau())
+    if (relocate() && walk_on_plateau()) {
       polish();
+      relocate_at_curves();
+    }
     count_left();
     return counts_;
   }
@@ -91,6 +88,7 @@ private:
   Blocks blocks_;
   AgreementCounts counts_;
   Relocator relocator_; ///< for what concerns more than one block
+  Relocator::Edges edges_ = Relocator::Edges::inner;
   Worklist work_;
 
   /// Moves vertices in blocks and adds to the worklist what they list.
@@ -107,7 +105,9 @@ private:
     const bool going = visit_in_blocks(
         blocks_, vertices, run_.threads, run_.monitor, fraction,
         [&] {
-          return BlockRelocator(w_, w_.legaliser, run_.seed, move, counts_, listed);
+          BlockRelocator made(w_, w_.legaliser, run_.seed, move, counts_, listed);
+          made.heed(edges_);
+          return made;
         },
         last);
     counts_ += relocator_.take_counts();
@@ -121,9 +121,38 @@ private:
     return going;
   }
 
+  bool relocate() {
+    bool going = true;
+    for (int pass = 0; going && pass < max_agreement_passes && work_.size() > 0; ++pass)
+      going = visit(work_.take(), double(pass) / max_agreement_passes,
+                    [pass](Relocator &relocator, Index v, const VertexRange &range) {
+                      return relocator.relocate(v, pass, range);
+                    });
+    return going;
+  }
+
+  /// Edges of curves come last: few disagree when all others agree, and some between
+  /// the legs of sharp corners cannot agree, for which nothing is to drift.
+  void relocate_at_curves() {
+    edges_ = Relocator::Edges::all;
+    relocator_.heed(edges_);
+    for (HalfFacet edge : disagreeing_edges())
+      if (mesh_.constraint(edge) != none)
+        for_quad(mesh_, edge, [&](Index v) { work_.add(v); });
+    (void)relocate();
+  }
+
   /// The one search for disagreeing edges.
   void scan() {
-    const auto edges = parallel_search<HalfFacet>(
+    const std::vector<HalfFacet> edges = disagreeing_edges();
+    counts_.before = edges.size();
+    for (HalfFacet edge : edges)
+      if (mesh_.constraint(edge) == none)
+        for_quad(mesh_, edge, [&](Index v) { work_.add(v); });
+  }
+
+  [[nodiscard]] std::vector<HalfFacet> disagreeing_edges() const {
+    return parallel_search<HalfFacet>(
         mesh_.cells.size(), run_.threads, [&](std::size_t c, const auto &add) {
           for (std::size_t i = 0; i < 3; ++i) {
             const HalfFacet edge(static_cast<Index>(c), i),
@@ -134,9 +163,6 @@ private:
               add(edge);
           }
         });
-    counts_.before = edges.size();
-    for (HalfFacet edge : edges)
-      for_quad(mesh_, edge, [&](Index v) { work_.add(v); });
   }
 
   /// Random moves that do not raise the count, to leave local minima.
@@ -191,7 +217,8 @@ private:
     }
   }
 
-  /// The disagreeing edges at the vertices that are still listed, each once.
+  /// The disagreeing edges at the vertices that are still listed, each once, and those of
+  /// curves.
   void count_left() {
     std::vector<std::pair<Index, std::size_t>> left;
     std::vector<HalfFacet> star;
@@ -202,12 +229,14 @@ private:
       const HalfFacet first = other.exists() && other.cell() < e.cell() ? other : e;
       left.emplace_back(first.cell(), first.facet());
     };
+    for (HalfFacet edge : disagreeing_edges())
+      if (mesh_.constraint(edge) != none)
+        count(edge);
     for (Index v : work_.take()) {
       star_of(mesh_, v, star);
       for (HalfFacet h : star) {
         count(h);
         count(HalfFacet(h.cell(), (h.facet() + 2) % 3));
-        count(HalfFacet(h.cell(), (h.facet() + 1) % 3));
       }
     }
     std::sort(left.begin(), left.end());

@@ -231,6 +231,8 @@ void Relocator::list_around(Index v) {
 /// Where the vertex on the other side is in another block, which may be moving it, the
 /// edge is listed without looking.
 void Relocator::list_if_disagreeing(HalfFacet edge) {
+  if (edges_ == Edges::inner && mesh_.constraint(edge) != none)
+    return;
   const HalfFacet other = mesh_.opposite(edge);
   if ((other.exists() && !range_.contains(mesh_.at(other.cell()))) ||
       disagrees(mesh_, edge))

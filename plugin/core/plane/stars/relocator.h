@@ -19,8 +19,18 @@ inline constexpr int max_agreement_passes = 10;
 /// Moves vertices of a range of the mesh, one after another; an object to a thread.
 class Relocator {
 public:
+  using Edges = PlaneTrial::Edges;
+
   Relocator(Workspace &w, Legaliser &legaliser, Seed seed)
-      : w_(w), mesh_(w.mesh), legaliser_(legaliser), seed_(seed), trial_(w) {}
+      : w_(w), mesh_(w.mesh), legaliser_(legaliser), seed_(seed), trial_(w) {
+    heed(Edges::inner);
+  }
+
+  /// Which edges are to agree.
+  void heed(Edges edges) {
+    edges_ = edges;
+    trial_.count(edges);
+  }
 
   /// The three ways to move v. Each @returns false, without a change, when that would
   /// touch or ask anything outside of the range.
@@ -40,6 +50,7 @@ private:
   Legaliser &legaliser_;
   Seed seed_;
   PlaneTrial trial_;
+  Edges edges_{};
   std::optional<ProtectingBall> ball_; ///< once a vertex on a shell is met
   VertexRange range_;
   AgreementCounts counts_;

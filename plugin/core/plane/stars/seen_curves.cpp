@@ -13,6 +13,8 @@ std::vector<SeenFacet<2>> seen_curves(const Workspace &w) {
       if (mesh.constraint(h) == none || (beyond.exists() && beyond.cell() < h.cell()))
         continue;
       const CurveEdge &edge = w.curve_edge(h);
+      if (edge.ball != none)
+        continue;
       const Facet<2> ends = mesh.facet(h);
       const double height = chord_height(w.curve(edge), edge.t0, edge.t1);
       seen.push_back(seen_facet<2>(certified(mesh), h, ends,

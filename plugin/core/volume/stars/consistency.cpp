@@ -106,7 +106,7 @@ public:
   Rounds(Volume &volume, const Run &run, const ConsistencyParameters &parameters,
          const DelaunayBits &known)
       : volume_(volume), mesh_(volume.mesh), run_(run), parameters_(parameters),
-        normals_(volume, run.threads), operator_(volume), insertion_(volume),
+        normals_(volume, run.threads), operator_(volume), insertion_(volume, normals_),
         mover_(volume, insertion_, operator_, parameters.sigma_0) {
     progress_.failing = progress_.reference = failing_fraction(mesh_, known.bits);
   }
@@ -155,7 +155,7 @@ public:
                                             double radius) {
     if (!insertion_.gather(p, std::array{cell}, {.closest = separation}))
       return {};
-    const HalfFacet wall = insertion_.encroached(normals_);
+    const HalfFacet wall = insertion_.encroached();
     if (wall.exists() && !effort_.is_stuck)
       return {{}, wall};
     return {insertion_.score(parameters_.sigma_0, radius), wall};
@@ -217,15 +217,16 @@ private:
   }
 
   void change(const BadCell<3> &item, ConsistencyCounts &counts) {
-    if (item.is_facet()) {
-      insert_in(item, counts);
-    } else if (!effort_.moves) {
-      (void)insert_or_snap_valid(item, counts);
+    const auto insert = [&] {
+      return item.is_facet() ? insert_in(item, counts)
+                             : insert_or_snap_valid(item, counts);
+    };
+    if (!effort_.moves) {
+      (void)insert();
     } else if (!effort_.inserts_early) {
       if (!move_any(item, counts, 0))
-        (void)insert_or_snap_valid(item, counts);
-    } else if (!move_any(item, counts, fewer_failing) &&
-               !insert_or_snap_valid(item, counts)) {
+        (void)insert();
+    } else if (!move_any(item, counts, fewer_failing) && !insert()) {
       (void)move_any(item, counts, 0);
     }
   }
@@ -254,10 +255,12 @@ private:
     return false;
   }
 
-  /// A point of the surface for a bad facet, on its longest edge.
-  void insert_in(const BadCell<3> &item, ConsistencyCounts &counts) {
-    if (run_.monitor.has_room(volume_.n_vertices()) && split(item.facet))
-      counts.add(item.rule);
+  /// A point of the surface for a bad facet, on one of its edges.
+  bool insert_in(const BadCell<3> &item, ConsistencyCounts &counts) {
+    if (!run_.monitor.has_room(volume_.n_vertices()) || !split(item.facet))
+      return false;
+    counts.add(item.rule);
+    return true;
   }
 
   /// Insert_or_snap_valid (Algorithm 5): Pick_valid (Algorithm 3) and Insert (Algorithm

@@ -147,17 +147,21 @@ bool VolumeInsertion::stays(Index a, Index b) const {
   });
 }
 
-HalfFacet VolumeInsertion::encroached(const SurfaceNormals &normals) const {
+/// Of a facet of a surface that stays, when the cell before it has this apex.
+double VolumeInsertion::wall_margin_at(const Outer &outer,
+                                       const Vertex<3> &apex) const {
   const Triangulation<3> &mesh = volume_.mesh;
-  for (const Outer &outer : outers_) {
-    const Index patch = mesh.constraint(outer.facet);
-    if (patch == none)
-      continue;
-    WallStar star = wall_star(mesh, normals, outer.v, patch, {none, none});
-    star.apexes[0] = &p_;
-    if (wall_margin(star) > 0)
+  const HalfFacet beyond = mesh.opposite(outer.facet);
+  WallStar star = wall_star(mesh, normals_, outer.v, mesh.constraint(outer.facet),
+                            {none, beyond.exists() ? mesh.apex(beyond) : none});
+  star.apexes[0] = &apex;
+  return margin_of(star);
+}
+
+HalfFacet VolumeInsertion::encroached() const {
+  for (const Outer &outer : outers_)
+    if (volume_.mesh.constraint(outer.facet) != none && wall_margin_at(outer, p_) > 0)
       return outer.facet;
-  }
   return {};
 }
 
@@ -173,6 +177,9 @@ AgreementCost VolumeInsertion::cost_before() const {
         cost.add_facet(facet_margin(facet_star(mesh, h)));
     }
   }
+  for (const Outer &outer : outers_)
+    if (mesh.constraint(outer.facet) != none)
+      cost.add_facet(wall_margin_at(outer, mesh.vertex(mesh.apex(outer.facet))));
   return cost;
 }
 
@@ -186,8 +193,9 @@ AgreementCost VolumeInsertion::cost_after() {
     const Vertex<3> &a = mesh.vertex(t[0]), &b = mesh.vertex(t[1]),
                     &c = mesh.vertex(t[2]);
     cost.add_cell(shape_quality(a, b, c, p_));
-    if (const HalfFacet beyond = mesh.opposite(facet);
-        beyond.exists() && mesh.constraint(facet) == none)
+    if (mesh.constraint(facet) != none)
+      cost.add_facet(wall_margin_at(outers_[k], p_));
+    else if (const HalfFacet beyond = mesh.opposite(facet); beyond.exists())
       cost.add_facet(facet_margin({&a, &b, &c, &p_, &mesh.vertex(mesh.apex(beyond))}));
     for (std::size_t i = 0; i < 3; ++i) {
       const Index u = t[(i + 1) % 3], w = t[(i + 2) % 3];

@@ -11,7 +11,7 @@ namespace anistar {
 /// What pick_valid compares; less is better.
 struct PointScore {
   int slivers = std::numeric_limits<int>::max(); ///< that the point would make
-  int failing = 0; ///< change of the number of facets that fail the five-metric test
+  int failing = 0; ///< change of the number of facets that fail, of surfaces too
   double cost = 0; ///< change of the total of AgreementCost
 
   [[nodiscard]] bool is_better(const PointScore &other) const {
@@ -34,7 +34,9 @@ using ScoredPlace = ScoredPoint<3, PointScore>;
 /// The cavity of one point after another.
 class VolumeInsertion {
 public:
-  explicit VolumeInsertion(Volume &volume) : volume_(volume) {}
+  /// @pre both outlive this object
+  VolumeInsertion(Volume &volume, const SurfaceNormals &normals)
+      : volume_(volume), normals_(normals) {}
 
   /// Takes up a point: the cells around the seeds whose M_p-ball contains it, less
   /// those that would leave a cell below the floor. Walls are not crossed.
@@ -44,7 +46,7 @@ public:
                             const EntryRule &rule);
   /// A constrained facet of the cavity that the point encroaches upon: it lies in a
   /// surface ball of one of its vertices.
-  [[nodiscard]] HalfFacet encroached(const SurfaceNormals &normals) const;
+  [[nodiscard]] HalfFacet encroached() const;
   /// @param sigma_0 cells of less sliverity are slivers
   /// @param radius circumradius up to which they count
   [[nodiscard]] PointScore score(double sigma_0, double radius);
@@ -62,6 +64,7 @@ private:
   };
 
   Volume &volume_;
+  const SurfaceNormals &normals_;
   Vertex<3> p_{};
   EntryRule rule_{};
   std::vector<Index> cells_, link_;
@@ -79,6 +82,7 @@ private:
   [[nodiscard]] bool keeps_vertices();
   [[nodiscard]] bool keeps_ridges() const;
   [[nodiscard]] bool stays(Index a, Index b) const;
+  [[nodiscard]] double wall_margin_at(const Outer &outer, const Vertex<3> &apex) const;
   [[nodiscard]] AgreementCost cost_before() const;
   [[nodiscard]] AgreementCost cost_after();
   [[nodiscard]] bool is_sliver(const Outer &outer, double sigma_0, double radius) const;

@@ -1,0 +1,68 @@
+"""Edges of curves come into the surface stars of their ends."""
+
+import numpy as np
+import pytest
+from elementary_inputs import cos, sin
+from meshes import annulus, slit, square, two_regions
+
+from anistar import ConsistencyOptions, RemeshOptions, certify, remesh, validate
+
+
+def turning(mesh, speed, ratio=4.0, h=0.1):
+    angle = speed * mesh.points[:, 0]
+    along = np.stack([cos(angle), sin(angle)], axis=1)
+    excess = (ratio**2 - 1) * np.einsum("ni,nj->nij", along, along)
+    return (np.eye(2) + excess) / h**2
+
+
+def failing(done):
+    certificate = certify(done.mesh, done.metric)
+    return int((~certificate.surface_ok).sum()), certificate
+
+
+BODIES = {"square": square(16), "annulus": annulus(12), "slit": slit(16), "two": two_regions(16)}
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_agreement_certifies_nearly_all_of_them(body):
+    mesh = BODIES[body]
+    left = {False: 0, True: 0}
+    for speed in (2.0, 3.0, 4.0):
+        M = turning(mesh, speed, ratio=4.0)
+        for agreement in left:
+            done = remesh(mesh, M, RemeshOptions(agreement=agreement, max_refinement=None))
+            assert validate(done.mesh) == []
+            n, certificate = failing(done)
+            left[agreement] += n
+            if agreement:
+                share = certificate.as_dict()["surface_star_ok"]
+                assert done.report.surface_star_ok == pytest.approx(share)
+                assert "surface_star_ok = " in done.report.verdict
+    assert left[True] <= max(0.7 * left[False], 2)
+
+
+def test_without_a_certificate_nothing_is_said():
+    mesh = square(8)
+    done = remesh(mesh, turning(mesh, 1.0, h=0.3), RemeshOptions(agreement=False))
+    assert done.report.surface_star_ok is None
+
+
+@pytest.mark.parametrize("body", ["square", "annulus", "two"])
+def test_rules_refine_what_is_left(body):
+    mesh = BODIES[body]
+    options = RemeshOptions(until_consistent=True, max_refinement=None)
+    done = remesh(mesh, turning(mesh, 2.0), options)
+    assert validate(done.mesh) == []
+    n, certificate = failing(done)
+    assert done.report.consistency["stop_reason"] == "consistent"
+    assert certificate.star_ok.all()
+    assert n <= 1  # the curves of the finished mesh are not quite those of the geometry
+    assert {"facet_size", "facet_radius_edge", "facet_inconsistency"} <= set(
+        done.report.consistency
+    )
+    assert done.report.consistency["facet_topology"] == 0
+
+
+def test_a_bad_bound_is_refused():
+    with pytest.raises(ValueError, match="alpha_1 must be positive"):
+        ConsistencyOptions(alpha_1=0.0)
