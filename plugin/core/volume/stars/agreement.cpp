@@ -18,7 +18,7 @@ constexpr double radii[] = {.15, .07};
 /// The last failing facets get so many places a vertex; in every so many rounds the
 /// vertices around them make room: what is left resists because others are near.
 constexpr std::size_t last_failing = 30;
-constexpr int last_places = 24, room_period = 3;
+constexpr int last_places = 24, room_period = 2;
 /// Every so many rounds, but for the directed ones, collapses and insertions are tried;
 /// where many facets fail not at once: they cost far more than a move, and vertices.
 constexpr int first_repair = 9, repair_period = 5;

@@ -38,10 +38,10 @@ public:
   }
 
 private:
-  static constexpr int max_rounds = 60;
+  static constexpr int max_rounds = 120;
   /// Rounds that may pass without clearly fewer failing facets; more when only a few
   /// are left.
-  static constexpr int patience = 9, patience_with_few = 30;
+  static constexpr int patience = 9, patience_with_few = 45;
   static constexpr double least_reduction = .05;
   /// So many trials are made whatever the number of cells.
   static constexpr double fewest_trials = 30000;
