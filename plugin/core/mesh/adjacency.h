@@ -2,6 +2,7 @@
 // Cells and how they meet.
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,7 +50,8 @@ public:
   [[nodiscard]] constexpr bool exists() const { return code_ >= 0; }
   /// As one number.
   [[nodiscard]] constexpr Index code() const { return code_; }
-  friend bool operator==(const HalfFacet &, const HalfFacet &) = default;
+  /// In the order of the cells.
+  friend auto operator<=>(const HalfFacet &, const HalfFacet &) = default;
 
 private:
   Index code_ = none;

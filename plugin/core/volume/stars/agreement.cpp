@@ -138,13 +138,8 @@ private:
 
   /// Adds a failing facet as seen from its first cell.
   void list(HalfFacet h, std::vector<HalfFacet> &to) {
-    if (!state_.margins.fails(h))
-      return;
-    const HalfFacet beyond = mesh_.opposite(h);
-    to.push_back(beyond.exists() ? std::min(h, beyond, before) : h);
-  }
-  static bool before(HalfFacet a, HalfFacet b) {
-    return a.cell() != b.cell() ? a.cell() < b.cell() : a.facet() < b.facet();
+    if (state_.margins.fails(h))
+      to.push_back(first_side(mesh_, h));
   }
 
   /// What was on the list and what changed, looked at again.
@@ -160,7 +155,7 @@ private:
         for (std::size_t i = 0; i < 4; ++i)
           list(HalfFacet(c, i), left);
     view_.changed.clear();
-    std::sort(left.begin(), left.end(), before);
+    std::sort(left.begin(), left.end());
     left.erase(std::unique(left.begin(), left.end()), left.end());
     failing_ = std::move(left);
   }

@@ -59,6 +59,12 @@ private:
   return margin > 0 ? std::max(rounded, least) : std::min(rounded, -least);
 }
 
+/// The facet as its first cell has it.
+[[nodiscard]] inline HalfFacet first_side(const Triangulation<3> &mesh, HalfFacet h) {
+  const HalfFacet beyond = mesh.opposite(h);
+  return beyond.exists() && beyond < h ? beyond : h;
+}
+
 /// The margins of facets, each found once and kept on both sides of the facet until one
 /// of its cells changes.
 class FacetMargins {

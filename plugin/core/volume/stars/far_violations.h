@@ -66,9 +66,9 @@ struct WallViolation {
   Index inside;
 };
 
-/// One for each of these walls.
-[[nodiscard]] std::vector<WallViolation> wall_violations(const Volume &volume,
-                                                         const SurfaceNormals &normals,
-                                                         int threads, const Look &look);
+/// One for each of these walls that is not in the surface stars of its vertices.
+[[nodiscard]] std::vector<WallViolation>
+wall_violations(const Triangulation<3> &mesh, const SurfaceNormals &normals,
+                std::span<const HalfFacet> walls, int threads, const Look &look);
 
 } // namespace anistar

@@ -5,15 +5,20 @@
 #include "stars/rules.h"
 #include "volume/stars/relocation.h"
 
+#include <numeric>
+#include <utility>
+
 namespace anistar {
 namespace {
 
 constexpr int max_rounds = 8;
 /// The rounds go on while one leaves less than this part of the failing cells.
 constexpr double good_progress = .9;
+/// With so few failures it costs nothing, and they go on while vertices move.
+constexpr std::size_t last_failing = 10;
 /// From this round on random places are tried too, within this metric distance.
 constexpr int first_random = 1;
-constexpr double random_radius = .1;
+constexpr RandomPlaces random_places{.radius = .1, .n = 12};
 /// The monitor looks at the clock and at the user after so many failures.
 constexpr std::size_t failures_between_looks = 32;
 
@@ -27,7 +32,9 @@ public:
 
   MendingCounts mend(double mended_part) {
     MendingCounts counts;
-    Failures failing = failures(0);
+    std::vector<Index> everywhere(mesh_.cells.size());
+    std::iota(everywhere.begin(), everywhere.end(), 0);
+    Failures failing = failures(everywhere, {}, 0);
     const double most = mended_part * double(mesh_.n_cells());
     if (double(failing.cells.size()) > most || double(failing.walls.size()) > most)
       return counts;
@@ -36,12 +43,13 @@ public:
                         run_.monitor.look(fraction_of(round));
          ++round) {
       const std::size_t before = failing.size(), moved = move_at(failing, round);
-      renew(fraction_of(round));
+      const std::vector<Index> changed = renew(fraction_of(round));
       counts.moves += moved;
-      failing = failures(fraction_of(round));
-      is_progressing =
-          round < first_random ||
-          (moved > 0 && double(failing.size()) <= good_progress * double(before));
+      failing = failures(changed, failing.walls, fraction_of(round));
+      const bool is_cheap = failing.size() <= last_failing;
+      is_progressing = round < first_random ||
+                       (moved > 0 && (is_cheap || double(failing.size()) <=
+                                                      good_progress * double(before)));
     }
     counts.more_failing = view_.more_failing;
     return counts;
@@ -63,9 +71,21 @@ private:
 
     [[nodiscard]] std::size_t size() const { return cells.size() + walls.size(); }
   };
-  [[nodiscard]] Failures failures(double fraction) const {
+  /// @param changed cells, in order; walls elsewhere fail as before
+  [[nodiscard]] Failures failures(std::span<const Index> changed,
+                                  std::span<const WallViolation> before,
+                                  double fraction) const {
+    std::vector<HalfFacet> walls;
+    for (const WallViolation &violation : before)
+      walls.push_back(violation.wall);
+    for (Index c : changed)
+      for (std::size_t i = 0; mesh_.is_alive(c) && volume_.is_walled(c) && i < 4; ++i)
+        if (const HalfFacet h(c, i); mesh_.constraint(h) != none)
+          walls.push_back(first_side(mesh_, h));
+    std::sort(walls.begin(), walls.end());
+    walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
     return {failing_cells(mesh_, known_.bits),
-            wall_violations(volume_, state_.normals, run_.threads,
+            wall_violations(mesh_, state_.normals, walls, run_.threads,
                             to_the_end(run_.monitor, fraction))};
   }
   [[nodiscard]] static double fraction_of(int round) {
@@ -88,9 +108,10 @@ private:
       const std::size_t first = random.below(vertices.size());
       for (std::size_t k = 0; k < vertices.size() && is_violated(violation); ++k) {
         const Index v = vertices[(first + k) % vertices.size()];
-        moves += v != none && (relocation_.step(v) ||
-                               (round >= first_random &&
-                                relocation_.relocate(v, {random_radius}, random)));
+        moves +=
+            v != none &&
+            (relocation_.step(v) ||
+             (round >= first_random && relocation_.relocate(v, random_places, random)));
       }
     }
     return moves;
@@ -148,10 +169,11 @@ private:
 
   /// Decides again for what depends on the cells that have changed: to the end, or the
   /// answers would be those of another mesh.
-  void renew(double fraction) {
+  /// @returns these
+  std::vector<Index> renew(double fraction) {
     renew_bits<3>(certified(mesh_), view_.changed, run_.threads,
                   to_the_end(run_.monitor, fraction), known_);
-    view_.changed.clear();
+    return std::exchange(view_.changed, {});
   }
 };
 
