@@ -90,13 +90,18 @@ void SurfaceShape::match(const SurfaceInput &input, const Features &features) {
   curves_of_ = curves.winners();
 }
 
-Vector<3> SurfaceShape::on_patch(Index p, const Vector<3> &x) const {
+SurfaceFoot SurfaceShape::foot(Index p, const Vector<3> &x) const {
   const Patch &here = patch(p);
   if (here.is_planar)
-    return x - here.normal * here.normal.dot(x - here.origin);
-  const CurvedPieces *pieces = geometry_->surface(here.tag);
-  const Vector<3> near = pieces ? pieces->project(x, chosen(patches_of_, p)).x : x;
-  return projection_ ? projection_(near, here.tag) : near;
+    return {x - here.normal * here.normal.dot(x - here.origin), here.normal};
+  SurfaceFoot foot{x, Vector<3>::Zero()};
+  if (const CurvedPieces *pieces = geometry_->surface(here.tag)) {
+    const CurvedPieces::Foot found = pieces->project(x, chosen(patches_of_, p));
+    foot = {found.x, found.normal / std::max(found.normal.norm(), 1e-300)};
+  }
+  if (projection_)
+    foot.x = projection_(foot.x, here.tag);
+  return foot;
 }
 
 Vector<3> SurfaceShape::normal(Index p, const Vector<3> &x,

@@ -20,6 +20,11 @@ inline constexpr double smallest_facet_cosine = .5;
 /// A user's own geometry: the point of the surface with this tag for a point near it.
 using SurfaceProjection = std::function<Vector<3>(const Vector<3> &, Index tag)>;
 
+/// A point of a surface, and the unit normal there.
+struct SurfaceFoot {
+  Vector<3> x, normal;
+};
+
 /// Planes and lines are exact to round-off: what lies on one is put back on it. A
 /// point of a curved patch or ridge goes to its foot on the smooth surface or ridge of
 /// the geometry with its tag.
@@ -37,7 +42,12 @@ public:
   void match(const SurfaceInput &input, const Features &features);
   [[nodiscard]] bool is_curved() const { return geometry_ != nullptr; }
   void freeze(Index c) { curves_[c].is_frozen = true; }
-  [[nodiscard]] Vector<3> on_patch(Index p, const Vector<3> &x) const;
+  [[nodiscard]] Vector<3> on_patch(Index p, const Vector<3> &x) const {
+    return foot(p, x).x;
+  }
+  /// The point of a patch for x. The normal has either direction, and is zero where the
+  /// geometry tells none.
+  [[nodiscard]] SurfaceFoot foot(Index p, const Vector<3> &x) const;
   /// The unit normal of the surface near x, on the side of `like`; `like` itself where
   /// the geometry tells none.
   [[nodiscard]] Vector<3> normal(Index p, const Vector<3> &x,

@@ -45,7 +45,15 @@ bool VertexTrial::gather(Index v, std::span<const Index> star) {
 }
 
 void VertexTrial::place(const Vector<3> &x) {
-  at_.x = volume_.surface.place(volume_.feature(v_), volume_.support_of(v_), x);
+  const Index dimension = volume_.feature(v_), lies_on = volume_.support_of(v_);
+  if (dimension == 2 && is_in_range<3>(x)) {
+    const SurfaceFoot foot = volume_.surface.foot(lies_on, x);
+    at_.x = foot.x;
+    normal_ = foot.normal;
+  } else {
+    at_.x = volume_.surface.place(dimension, lies_on, x);
+    normal_ = Vector<3>::Zero();
+  }
 }
 
 bool VertexTrial::keeps_surfaces() const {

@@ -76,6 +76,9 @@ public:
 
   /// Tries x, or where x goes on the surface or ridge of the vertex.
   void place(const Vector<3> &x);
+  /// Of the surface that the vertex lies on, at its place or close to it, of unit
+  /// length; zero where nothing tells.
+  [[nodiscard]] const Vector<3> &surface_normal() const { return normal_; }
   /// Whether all cells have a volume there, up to round-off.
   [[nodiscard]] bool is_positive() const { return shapes_.are_positive(at_.x); }
   /// Whether the facets of surfaces keep their side, and stay near curved ones.
@@ -105,6 +108,7 @@ private:
   StarShapes shapes_;
   double least_before_ = 1, sum_before_ = 0;
   Vertex<3> at_{};
+  Vector<3> normal_ = Vector<3>::Zero();
   Index background_cell_ = none; ///< where its metric was found
 };
 

@@ -99,8 +99,10 @@ void MovingVertex::take_home_normals() {
 
 /// Finds the normals of curved surfaces where the vertex is tried.
 void MovingVertex::take_normals() {
+  const Vector<3> &found = trial_.surface_normal();
   for (auto &[patch, along] : normals_)
-    along = volume_.surface.normal(patch, trial_.vertex().x, along);
+    along = found.isZero(0) ? volume_.surface.normal(patch, trial_.vertex().x, along)
+                            : found;
 }
 
 PlaceScore MovingVertex::score_here() const {
@@ -146,7 +148,7 @@ bool MovingVertex::place(const Vector<3> &x, const ShapeDemand &demand) {
   if (!demand.is_met_by(trial_.measure()))
     return false;
   trial_.take_metric();
-  return demand.is_met_by(trial_.measure()) && trial_.keeps_surfaces();
+  return demand.is_met_by(trial_.measure());
 }
 
 std::optional<PlaceScore> MovingVertex::evaluate(double floor, double limit) {
@@ -188,7 +190,7 @@ bool MovingVertex::disagrees_no_more(const PlaceScore &before) {
     if (failing > before.cost.failing)
       return false;
   }
-  return true;
+  return trial_.keeps_surfaces();
 }
 
 void MovingVertex::remember() {

@@ -61,8 +61,8 @@ public:
   [[nodiscard]] std::optional<PlaceScore> evaluate(double floor, double limit);
   /// The same where the qualities there are to reach a floor and a sum.
   [[nodiscard]] bool place(const Vector<3> &x, const ShapeDemand &demand);
-  /// Whether no more facets fail there and edges are no worse; they may come nearer to
-  /// it.
+  /// Whether no more facets fail there, edges are no worse and surfaces keep their
+  /// shape; facets and edges may come nearer to it.
   [[nodiscard]] bool disagrees_no_more(const PlaceScore &before);
 
   /// Remembers the place as the best one. @pre it was evaluated
