@@ -3,7 +3,9 @@ import json
 import numpy as np
 import pytest
 from meshes import cube, square
+from surface.smooth_shapes import ball
 
+from anistar import certify
 from anistar.cli import main
 from anistar.formats import read, write, write_metric
 
@@ -100,3 +102,24 @@ def test_a_3d_mesh_is_certified_too(folder, capsys, off, code):
     assert fields["star_ok"].values.sum() == report["stars"][0]
     assert check("cube.mesh --metric cube.sol --picture cube.png") == 2
     assert "--picture is for 2D meshes" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("shape", ["smooth", "polyhedron"])
+def test_surface_stars_are_judged_as_the_facets_are_meant(folder, capsys, shape):
+    mesh = ball(3)
+    M = np.tile(np.diag([9.0, 4.0, 1.0]), (mesh.n_points, 1, 1))
+    write("ball.mesh", mesh)
+    write_metric("ball.sol", mesh, M)
+    check(f"ball.mesh --metric ball.sol --json --shape {shape}")
+    report = json.loads(capsys.readouterr().out)["certificate"]
+    expected = certify(mesh, M, shape=shape)
+    assert report["surface_facets"] == [int(expected.surface_ok.sum()), mesh.n_facets]
+    assert report["surface_star_ok"] == pytest.approx(expected.as_dict()["surface_star_ok"])
+
+
+def test_a_ridge_angle_that_is_none_is_refused(folder, capsys):
+    mesh = cube(1)
+    write("cube.mesh", mesh)
+    write_metric("cube.sol", mesh, np.tile(np.eye(3), (mesh.n_points, 1, 1)))
+    assert check("cube.mesh --metric cube.sol --ridge-angle 0") == 2
+    assert "ridge_angle must be in (0, 180] degrees" in capsys.readouterr().err

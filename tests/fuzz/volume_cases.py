@@ -29,7 +29,7 @@ def make_volume_case(seed, number, *, largest=1000.0):
         ridge_angle=float(rng.choice([45.0, 45.0, 30.0, 80.0])),
         max_vertices=int(rng.choice([300, 20000, 20000, 20000])),
         max_seconds=60.0,
-        agreement=False,
+        agreement=(False, "auto", True)[rng.integers(3)],
     )
     return Case(number, shape.kind, metric_kind, geometry, geometry, M, options)
 

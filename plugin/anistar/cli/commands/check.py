@@ -40,6 +40,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="allowed relative difference of measures from the reference (default 1e-10)",
     )
     parser.add_argument(
+        "--shape",
+        choices=("smooth", "polyhedron"),
+        default="smooth",
+        help="what the facets mean to surface stars: samples of smooth curves and surfaces, or "
+        "the domain itself (default smooth)",
+    )
+    parser.add_argument(
+        "--ridge-angle",
+        type=float,
+        default=45.0,
+        help="degrees from which facets meet in a corner or ridge (default 45)",
+    )
+    parser.add_argument(
         "-o",
         "--output",
         metavar="FILE",
@@ -52,7 +65,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command; 1 if the mesh breaks a rule or a star is neither certified nor exempt."""
+    """Run the command; 1 if the mesh breaks a rule or a star is neither certified nor exempt.
+
+    Surface stars are told, and change nothing of that.
+    """
     _check_targets(arguments)
     mesh, _, found = read_with_report(arguments.input)
     reference = read(arguments.reference)[0] if arguments.reference else None
@@ -60,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
     M = certificate = None
     if arguments.metric:
         M = check_metric(read_metric(arguments.metric, mesh), dim=mesh.dim)
-        certificate = certify(mesh, M)
+        certificate = certify(mesh, M, shape=arguments.shape, ridge_angle=arguments.ridge_angle)
         _write(arguments, mesh, M, certificate)
     _show(arguments, found, problems, quality(mesh, M).as_dict(), certificate)
     is_good = certificate is None or certificate.is_certified
