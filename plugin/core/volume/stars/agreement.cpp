@@ -1,7 +1,6 @@
 #include "volume/stars/agreement.h"
 
 #include "volume/mesh/slab_team.h"
-#include "volume/stars/agreement_rounds.h"
 #include "volume/stars/facet_repair.h"
 #include "volume/stars/relocation.h"
 

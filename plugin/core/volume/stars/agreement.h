@@ -3,23 +3,10 @@
 // every facet.
 
 #include "base/run.h"
-#include "stars/agreement.h"
 #include "volume/mesh/volume.h"
+#include "volume/stars/agreement_effort.h"
 
 namespace anistar {
-
-/// How much is tried where directed steps find nothing more.
-struct AgreementEffort {
-  double trials_per_cell; ///< places
-  double mended_part;     ///< cells are mended when no more of them fail than this part
-  int patience = 1;       ///< so many times the rounds and trials
-};
-/// What a mesh gets unasked: the directed steps and a little more.
-inline constexpr AgreementEffort small_effort{.trials_per_cell = .25,
-                                              .mended_part = .005};
-/// As long as it helps. A bound on the trial places: the metrics that could be
-/// certified, but for a few cells, took a third of it.
-inline constexpr AgreementEffort full_effort{.trials_per_cell = 20, .mended_part = .03};
 
 /// Directed steps of the vertices of facets that fail the five-metric test (see
 /// facet_margin); then, at what is left, swaps, re-insertions and random moves, scored
