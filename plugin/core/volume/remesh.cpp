@@ -109,34 +109,37 @@ void compact(Volume &volume, int threads, PerCell<std::uint8_t> &delaunay) {
   delaunay = std::move(moved);
 }
 
-void extract_facets(const Volume &volume, VolumeResult &out) {
-  const Triangulation<3> &mesh = volume.mesh;
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    if (!volume.is_walled(static_cast<Index>(c)))
-      continue;
+void extract_facets(const Triangulation<3> &mesh, const SurfaceShape &surface,
+                    VolumeResult &out) {
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (std::size_t i = 0; i < 4; ++i) {
       const HalfFacet h(static_cast<Index>(c), i), beyond = mesh.opposite(h);
       if (mesh.constraint(h) == none || (beyond.exists() && beyond.cell() < h.cell()))
         continue;
       const Facet<3> t = mesh.facet(h);
       out.facets.push_back({t[0], t[2], t[1]});
-      out.facet_tags.push_back(volume.surface.patch(mesh.constraint(h)).tag);
+      out.facet_tags.push_back(surface.patch(mesh.constraint(h)).tag);
     }
-  }
-  for (const RidgeEdge &edge : volume.ridges.edges()) {
-    if (edge.ends[0] == none || !volume.surface.curve(edge.curve).is_given)
+}
+
+void extract_ridges(std::span<const RidgeEdge> ridges, const SurfaceShape &surface,
+                    VolumeResult &out) {
+  for (const RidgeEdge &edge : ridges) {
+    if (edge.ends[0] == none || !surface.curve(edge.curve).is_given)
       continue;
     out.edges.push_back(edge.ends);
-    out.edge_tags.push_back(volume.surface.curve(edge.curve).tag);
+    out.edge_tags.push_back(surface.curve(edge.curve).tag);
   }
 }
 
-void take_mesh(Volume &volume, VolumeResult &out) {
-  extract_facets(volume, out);
-  out.vertices = std::move(volume.mesh.vertices);
-  out.cells = std::move(volume.mesh.cells);
-  out.cell_tags = std::move(volume.mesh.region);
-  out.is_curved = volume.surface.is_curved();
+void take_mesh(Triangulation<3> &mesh, std::span<const RidgeEdge> ridges,
+               const SurfaceShape &surface, VolumeResult &out) {
+  extract_facets(mesh, surface, out);
+  extract_ridges(ridges, surface, out);
+  out.vertices = std::move(mesh.vertices);
+  out.cells = std::move(mesh.cells);
+  out.cell_tags = std::move(mesh.region);
+  out.is_curved = surface.is_curved();
 }
 
 /// The user's projection, each call of which may take long.
@@ -148,6 +151,35 @@ SurfaceProjection timed(SurfaceProjection projection, Monitor &monitor) {
     monitor.note_time();
     return moved;
   };
+}
+
+/// The given mesh, changed until its edges have unit length.
+template <class Start>
+void remesh_by_passes(const Start &make_start, const Run &run,
+                      const RemeshSettings &settings, Stopwatch &watch,
+                      VolumeResult &out) {
+  const Shaping shaping = shape_volume(
+      [&] {
+        Volume start = make_start();
+        if (settings.agreement != AgreementMode::off)
+          rest_where_agreed(start, run);
+        return start;
+      },
+      run, watch);
+  Volume &volume = *shaping.volume;
+  VolumeStars stars(volume, run, settings);
+  certify_stars(stars, run, settings, watch, out);
+  if (out.stars.certified && has_gaps(volume.mesh))
+    compact(volume, run.threads, out.delaunay);
+  watch.phase("report");
+  out.kept_quality = shaping.kept;
+  take_mesh(volume.mesh, volume.ridges.edges(), volume.surface, out);
+  out.passes = shaping.counts;
+  const bool is_over = shaping.is_full || out.vertices.size() > settings.max_vertices;
+  out.reason = run.monitor.reason();
+  // what the clock has ended may end elsewhere the next time: that is told first
+  if (is_over && out.reason == StopReason::finished)
+    out.reason = StopReason::max_vertices;
 }
 
 } // namespace
@@ -166,28 +198,10 @@ VolumeResult remesh_volume(const VolumeInput &input,
     const Background<3> background(input.surface.points, input.cells, metric,
                                    settings.threads);
     const SurfaceProjection project = timed(std::move(projection), monitor);
-    const Shaping shaping = shape_volume(
-        [&] {
-          Volume start = make_volume(input, metric, background, geometry, project);
-          if (settings.agreement != AgreementMode::off)
-            rest_where_agreed(start, run);
-          return start;
-        },
-        run, watch);
-    Volume &volume = *shaping.volume;
-    VolumeStars stars(volume, run, settings);
-    certify_stars(stars, run, settings, watch, out);
-    if (out.stars.certified && has_gaps(volume.mesh))
-      compact(volume, run.threads, out.delaunay);
-    watch.phase("report");
-    out.kept_quality = shaping.kept;
-    take_mesh(volume, out);
-    out.passes = shaping.counts;
-    const bool is_over = shaping.is_full || out.vertices.size() > settings.max_vertices;
-    out.reason = monitor.reason();
-    // what the clock has ended may end elsewhere the next time: that is told first
-    if (is_over && out.reason == StopReason::finished)
-      out.reason = StopReason::max_vertices;
+    const auto make_start = [&] {
+      return make_volume(input, metric, background, geometry, project);
+    };
+    remesh_by_passes(make_start, run, settings, watch, out);
   }
   const auto edges = edges_of<3>(out.cells, out.vertices.size());
   out.statistics = measure(out.vertices, out.cells, edges, settings.threads);
