@@ -13,18 +13,21 @@ enum class Stream : std::uint64_t {
   reenter,      ///< where a vertex of a bad cell leaves and enters again
   repair_facet, ///< what is tried at a facet that fails
   mend,         ///< places where a star becomes Delaunay
+  pick_site,    ///< candidates of pick_valid for a star set
   wander,       ///< moves that make nothing worse, when no other helps
 };
 
 /// Where a stream begins. The first ones follow the seed, one after another; mend is
 /// further from it than they are (no sum of the bits of its mask, of any signs, is
-/// below 10431), and wander on the other side of all seeds below 2^63 - 2. The values
-/// are part of the meshes: others make other ones.
+/// below 10431), pick_site still further, and wander on the other side of all seeds
+/// below 2^63 - 2. The values are part of the meshes: others make other ones.
 [[nodiscard]] constexpr std::uint64_t start_of(Stream stream, std::uint64_t seed) {
   constexpr std::uint64_t mask = 0x5741u;
   switch (stream) {
   case Stream::mend:
     return seed ^ mask;
+  case Stream::pick_site:
+    return seed ^ mask << 16;
   case Stream::wander:
     return ~seed;
   default:

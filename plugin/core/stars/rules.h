@@ -18,7 +18,8 @@ struct ConsistencyParameters {
   double delta;   ///< picking region: the ball of radius delta r about the circumcentre
   double beta;    ///< hitting sets count up to radius beta r
   int candidates; ///< points that pick_valid tries
-  double max_growth; ///< at most this fraction of vertices is added
+  double max_growth;             ///< at most this fraction of vertices is added
+  bool protecting_balls = false; ///< of ridges, see volume/pure/protecting_balls.h
 };
 
 /// Whether points are inserted until every star agrees; `pure` starts from the boundary
@@ -45,6 +46,7 @@ enum class ConsistencyStop {
   none_yet,
   consistent,
   stalled,
+  no_mesh, ///< consistent stars, which are no mesh of the domain
   max_growth,
   max_rounds,
   max_vertices,

@@ -1,0 +1,88 @@
+#pragma once
+// The eight rules of Algorithm 4 (RR-7712, section 7.1).
+
+#include "base/run.h"
+#include "stars/rules.h"
+#include "volume/pure/star_set.h"
+
+namespace anistar {
+
+/// In their order. What breaks a rule is refined before what breaks a later one.
+enum class PureRule {
+  kept,
+  ridge_conformity, ///< before the eight: an edge of a ridge is in the stars of its
+                    ///< ends
+  facet_size,
+  facet_topology,
+  facet_radius_edge,
+  cell_size,
+  cell_radius_edge,
+  sliver,
+  facet_consistency,
+  cell_consistency
+};
+
+[[nodiscard]] inline bool is_about_size(PureRule rule) {
+  return rule == PureRule::facet_size || rule == PureRule::facet_topology ||
+         rule == PureRule::cell_size;
+}
+
+/// A facet or a cell of a restricted star, the first rule that it breaks there, and its
+/// ball.
+struct BadSimplex {
+  PureRule rule = PureRule::kept;
+  Index star = none;
+  StarSimplex others{none, none, none}; ///< beside that of the star, `none` first
+  Vector<3> centre = Vector<3>::Zero();
+  double radius = 0;  ///< in the metric of the star
+  Index patch = none; ///< that the ball of a facet is centred on
+
+  [[nodiscard]] bool is_edge() const { return others[1] == none; }
+  [[nodiscard]] bool is_facet() const { return patch != none; }
+  /// Whether this one is refined first: of one rule the larger.
+  [[nodiscard]] bool precedes(const BadSimplex &other) const {
+    if (rule != other.rule)
+      return rule < other.rule;
+    if (radius != other.radius)
+      return radius > other.radius;
+    return std::tie(star, others) < std::tie(other.star, other.others);
+  }
+};
+
+/// Differs from the paper: rule 1 also asks that a facet stays as near to a curved
+/// surface as the Hausdorff number says.
+class Rules {
+public:
+  Rules(const StarSet &stars, const ConsistencyParameters &parameters,
+        HausdorffNumbers hausdorff)
+      : stars_(stars), parameters_(parameters), hausdorff_(hausdorff) {}
+
+  /// Calls visit(simplex) for every one of the restricted stars of v that breaks a
+  /// rule.
+  template <class Visit> void each_bad(Index v, Visit visit) const {
+    stars_.each_facet(v, [&](Index a, Index b, const SurfaceBall &ball) {
+      if (const BadSimplex found = judge(v, a, b, ball); found.rule != PureRule::kept)
+        visit(found);
+    });
+    stars_.each_cell(v, [&](const LinkTriangle &t, const StarSimplex &others) {
+      if (const BadSimplex found = judge(v, t, others); found.rule != PureRule::kept)
+        visit(found);
+    });
+  }
+  [[nodiscard]] bool is_sliver(const Vertex<3> &v, const Simplex<3> &s) const;
+
+private:
+  const StarSet &stars_;
+  const ConsistencyParameters &parameters_;
+  HausdorffNumbers hausdorff_;
+
+  [[nodiscard]] BadSimplex judge(Index v, Index a, Index b, const SurfaceBall &) const;
+  [[nodiscard]] BadSimplex judge(Index v, const LinkTriangle &t,
+                                 const StarSimplex &others) const;
+  [[nodiscard]] double size_at(const Vector<3> &x, Index hint) const;
+  [[nodiscard]] bool strays(Index v, Index a, Index b, const SurfaceBall &ball) const;
+  [[nodiscard]] bool is_consistent(Index v, const LinkTriangle &t,
+                                   const StarSimplex &others) const;
+};
+
+} // namespace anistar
