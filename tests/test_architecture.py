@@ -29,7 +29,7 @@ CORE_FOLDERS = [
 # 2D and 3D know nothing of each other.
 APART = [("plane", "surface"), ("plane", "volume")]
 # The rooms of a mesher, a storey a line. Those of one storey do not include each other.
-ROOMS_OF_A_MESHER = [{"geometry"}, {"mesh"}, {"passes", "stars"}]
+ROOMS_OF_A_MESHER = [{"geometry"}, {"mesh"}, {"passes", "pure", "stars"}]
 
 MADE_BY_COMMANDS = {"anistar-demo", "anistar-demo-3d", "build", "dist"}
 

@@ -345,6 +345,10 @@ class ConsistencyParameters:
     def max_growth(self) -> float: ...
     @max_growth.setter
     def max_growth(self, arg: float, /) -> None: ...
+    @property
+    def protecting_balls(self) -> bool: ...
+    @protecting_balls.setter
+    def protecting_balls(self, arg: bool, /) -> None: ...
 
 class AgreementMode(enum.Enum):
     off = 0
@@ -415,13 +419,15 @@ class ConsistencyStop(enum.Enum):
 
     stalled = 2
 
-    max_growth = 3
+    no_mesh = 3
 
-    max_rounds = 4
+    max_growth = 4
 
-    max_vertices = 5
+    max_rounds = 5
 
-    max_seconds = 6
+    max_vertices = 6
+
+    max_seconds = 7
 
 class AgreementOutcome(enum.Enum):
     off = 0

@@ -191,12 +191,6 @@ def test_a_consistent_mesh_is_left_alone():
     assert validate(done.mesh, reference=mesh) == []
 
 
-def test_the_pure_mode_is_refused():
-    mesh = cube(2)
-    with pytest.raises(ValueError, match='until_consistent="pure" exists in 2D only'):
-        remesh(mesh, uniform(mesh, 0.5), RemeshOptions(until_consistent="pure"))
-
-
 def test_a_stricter_rule_against_slivers_leaves_fewer():
     mesh = cube(3)
     thin = {0.05: 0, 0.45: 0}

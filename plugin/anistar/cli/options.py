@@ -151,7 +151,7 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "until_consistent": (
         _until_consistent,
         "then insert points until every star is Delaunay in its own metric; "
-        "pure: only that, from the boundary alone, in 2D only",
+        "pure: only that, from the boundary alone",
     ),
     "seed": (int, "of the random moves"),
     "threads": (int, "that work side by side; the result does not depend on it"),

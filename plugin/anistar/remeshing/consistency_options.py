@@ -37,6 +37,12 @@ class ConsistencyOptions:
         Points that pick_valid tries before it takes the best one.
     max_growth : float
         The run stops when it has added this fraction of vertices.
+    protecting_balls : bool
+        How ``until_consistent="pure"`` keeps ridges in 3D. False halves an edge of a ridge where a
+        point encroaches upon it, which can go on for ever where surfaces meet at less than 90
+        degrees in the metric. True gives the points of ridges balls that no other point may
+        enter: the stars are those of weighted sites then, and `certify`, which knows no
+        weights, does not find all of them near ridges.
     """
 
     alpha_0: float = 0.95
@@ -48,6 +54,7 @@ class ConsistencyOptions:
     beta: float = 2.0
     candidates: int = 16
     max_growth: float = 1.0
+    protecting_balls: bool = False
 
     def __post_init__(self) -> None:
         for name in ("alpha_0", "rho_0", "sigma_0", "beta", "max_growth"):

@@ -83,7 +83,9 @@ class RemeshOptions:
     until_consistent : bool or "pure"
         After that, insert points by Algorithm 2 of Boissonnat, Wormser and Yvinec until every
         star is Delaunay in its own metric or a bound is met; the best mesh seen comes back.
-        "pure" starts from the boundary alone and runs only that algorithm, in 2D only.
+        "pure" starts from the boundary alone and runs only that algorithm; in 3D Algorithms 4
+        and 5, with a star of its own for every vertex, and where that does not end consistent
+        the mesh is the one without `until_consistent`.
     consistency : ConsistencyOptions
         Its parameters.
     seed : int

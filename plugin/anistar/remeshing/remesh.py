@@ -143,8 +143,10 @@ def _check_call(
         )
     if geometry.dim != mesh.dim:
         raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh {mesh.dim}")
-    if mesh.dim == 3 and options.until_consistent == "pure":
-        raise ValueError('until_consistent="pure" exists in 2D only: use until_consistent=True')
+    if mesh.dim == 3 and options.until_consistent == "pure" and options.frozen_tags:
+        raise ValueError(
+            'until_consistent="pure" makes all surfaces anew in 3D: leave frozen_tags out'
+        )
     _check_frozen(options.frozen_tags, geometry)
 
 

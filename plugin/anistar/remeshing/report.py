@@ -80,7 +80,8 @@ class RemeshReport:
         Where the shape of the new mesh may not be what is meant: a deviation that no smooth shape
         has, or a measure that changed by more than 1 %.
     counts : dict of str to float
-        Operations made; ``consistency_moves`` are the vertices that Algorithm 2 moved in 3D;
+        Operations made; ``consistency_moves`` are the vertices that Algorithm 2 moved in 3D, and
+        ``star_set_sites`` those of the star set when ``until_consistent="pure"`` ended there;
         ``protected_corners`` and ``unprotected_corners`` are sharp corners whose
         legs have equal lengths, and those without a common one. ``disagreeing_before`` and
         ``disagreeing_after`` count the facets about which the metrics of the vertices of their

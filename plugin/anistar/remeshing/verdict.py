@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .. import _core
-from .._core import AgreementOutcome, AgreementReport, AgreementStop
+from .._core import AgreementOutcome, AgreementReport, AgreementStop, ConsistencyStop
 from ..base.arrays import Floats
 from ..judging.certificate import Certificate, certificate_of
 from ..judging.metric_mesh import MetricMesh, Proof, SurfaceMesh
@@ -83,6 +83,18 @@ def verdict_of(made: _core.RemeshResult, certificate: Certificate | None, agreem
     agreement : str
         What became of agreement.
     """
+    return _of_stars(made, certificate, agreement) + _of_star_set(made)
+
+
+def _of_star_set(made: _core.RemeshResult) -> str:
+    """Return what became of the mesh that was to be made by a star set alone."""
+    if "star_set_sites" not in made.counts or made.consistency_stop is ConsistencyStop.consistent:
+        return ""
+    n = made.counts["star_set_sites"]
+    return f"; the star set ended by {made.consistency_stop.name} with {n} sites: not its mesh"
+
+
+def _of_stars(made: _core.RemeshResult, certificate: Certificate | None, agreement: str) -> str:
     if certificate is not None:
         return verdict_line(certificate, agreement)
     if made.agreement.outcome in (AgreementOutcome.stopped, AgreementOutcome.done):

@@ -1,8 +1,11 @@
 #include "volume/remesh.h"
 
 #include "base/stopwatch.h"
+#include "remesh/kept_quality.h"
 #include "remesh/star_phases.h"
+#include "stars/certify_all.h"
 #include "volume/passes/shaping.h"
+#include "volume/pure/star_set_mesh.h"
 #include "volume/stars/agreement.h"
 #include "volume/stars/consistency.h"
 #include "volume/stars/star_mending.h"
@@ -142,6 +145,28 @@ void take_mesh(Triangulation<3> &mesh, std::span<const RidgeEdge> ridges,
   out.is_curved = surface.is_curved();
 }
 
+/// The mesh by the algorithm of the paper alone, with its certificate. @returns whether
+/// there is one
+bool take_pure_mesh(const Volume &start, std::span<const Index> region, const Run &run,
+                    const RemeshSettings &settings, Stopwatch &watch,
+                    VolumeResult &out) {
+  watch.phase("consistency");
+  StarSetMesh pure = mesh_by_stars(start, region, run, settings.parameters);
+  out.consistency = pure.counts;
+  out.n_sites = pure.n_sites;
+  if (!pure.exists())
+    return false;
+  Triangulation<3> &mesh = pure.merged.mesh;
+  watch.phase("certificate");
+  DelaunayBits known = certify_all(mesh, run);
+  out.stars.failures = failing_cells(mesh, known.bits).size();
+  out.stars.certified = certified_fractions(mesh, known.bits);
+  out.delaunay = std::move(known.bits);
+  out.kept_quality = kept_quality<3>(mesh.vertices, mesh.cells, run.threads);
+  take_mesh(mesh, pure.merged.ridges, start.surface, out);
+  return true;
+}
+
 /// The user's projection, each call of which may take long.
 SurfaceProjection timed(SurfaceProjection projection, Monitor &monitor) {
   if (!projection)
@@ -201,7 +226,14 @@ VolumeResult remesh_volume(const VolumeInput &input,
     const auto make_start = [&] {
       return make_volume(input, metric, background, geometry, project);
     };
-    remesh_by_passes(make_start, run, settings, watch, out);
+    if (settings.consistency != ConsistencyMode::pure) {
+      remesh_by_passes(make_start, run, settings, watch, out);
+    } else if (!take_pure_mesh(make_start(), input.cell_tags, run, settings, watch,
+                               out)) {
+      RemeshSettings otherwise = settings;
+      otherwise.consistency = ConsistencyMode::off;
+      remesh_by_passes(make_start, run, otherwise, watch, out);
+    }
   }
   const auto edges = edges_of<3>(out.cells, out.vertices.size());
   out.statistics = measure(out.vertices, out.cells, edges, settings.threads);

@@ -15,6 +15,9 @@ struct VolumeResult : RemeshResult<3> {
   std::vector<Index> edge_tags;
   bool is_curved = false; ///< some surface or ridge is
   VolumeCounts passes;
+  /// Of the star set, where the algorithm of the paper alone was asked for: the mesh is
+  /// the union of the stars if it was consistent.
+  std::optional<std::size_t> n_sites;
 };
 
 /// @param metric at the points of the input mesh, which carry it from then on

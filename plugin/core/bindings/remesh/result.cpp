@@ -111,6 +111,8 @@ Counts counts_of(const VolumeResult &result) {
   }
   if (result.consistency.stop != ConsistencyStop::none_yet)
     out.emplace("consistency_moves", result.consistency.moves);
+  if (result.n_sites)
+    out.emplace("star_set_sites", *result.n_sites);
   put_phases(result, out);
   return out;
 }
@@ -190,6 +192,7 @@ void bind_stop_reasons(nb::module_ &module) {
       .value("none_yet", ConsistencyStop::none_yet)
       .value("consistent", ConsistencyStop::consistent)
       .value("stalled", ConsistencyStop::stalled)
+      .value("no_mesh", ConsistencyStop::no_mesh)
       .value("max_growth", ConsistencyStop::max_growth)
       .value("max_rounds", ConsistencyStop::max_rounds)
       .value("max_vertices", ConsistencyStop::max_vertices)

@@ -33,7 +33,8 @@ void bind_consistency(nb::module_ &module) {
       .def_rw("delta", &Parameters::delta)
       .def_rw("beta", &Parameters::beta)
       .def_rw("candidates", &Parameters::candidates)
-      .def_rw("max_growth", &Parameters::max_growth);
+      .def_rw("max_growth", &Parameters::max_growth)
+      .def_rw("protecting_balls", &Parameters::protecting_balls);
 }
 
 } // namespace
