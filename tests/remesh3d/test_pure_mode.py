@@ -136,6 +136,17 @@ def test_points_of_surfaces_lie_on_them_and_tags_are_kept():
     assert validate(done.mesh, reference=round_mesh, tolerance=0.1) == []
 
 
+def test_corners_without_ridges_stay():
+    mesh = ball()
+    corners = np.unique(mesh.facets)[[3, 50]]
+    done = remesh(changed(mesh, corners=corners), uniform(mesh, 0.5), PURE)
+    assert done.report.consistency["stop_reason"] == "consistent"
+    assert np.array_equal(
+        np.sort(done.mesh.points[done.mesh.corners], axis=0), np.sort(mesh.points[corners], axis=0)
+    )
+    assert validate(done.mesh, reference=mesh, tolerance=0.15) == []
+
+
 def test_protecting_balls_keep_ridges_in_stars_of_weighted_sites():
     mesh = cube(3)
     rules = ConsistencyOptions(protecting_balls=True)

@@ -11,6 +11,19 @@ namespace {
 /// Enough for a polyhedron that resembles a ball.
 constexpr std::size_t sites_of_surface = 24;
 
+bool has_ridge(const Volume &start, Index v) {
+  bool found = false;
+  start.ridges.around(v, [&](Index, Index) { found = true; });
+  return found;
+}
+
+Site site_at(const Volume &start, Index v) {
+  return {.vertex = start.mesh.vertex(v),
+          .dimension = start.feature(v),
+          .lies_on = start.feature(v) == 2 ? start.support_of(v) : none,
+          .background = start.mesh.background_cell[v]};
+}
+
 /// The vertices of every connected surface, without those that have a ridge.
 std::vector<std::vector<Index>> closed_surfaces(const Volume &start) {
   const Triangulation<3> &mesh = start.mesh;
@@ -31,8 +44,8 @@ std::vector<std::vector<Index>> closed_surfaces(const Volume &start) {
       vertices[static_cast<Index>(sets.root(v))].push_back(static_cast<Index>(v));
   std::vector<std::vector<Index>> found;
   for (auto &[root, of_surface] : vertices)
-    if (std::all_of(of_surface.begin(), of_surface.end(),
-                    [&](Index v) { return start.feature(v) == 2; }))
+    if (std::none_of(of_surface.begin(), of_surface.end(),
+                     [&](Index v) { return has_ridge(start, v); }))
       found.push_back(std::move(of_surface));
   return found;
 }
@@ -57,12 +70,14 @@ std::vector<Index> far_apart(const Volume &start, const std::vector<Index> &vert
 
 std::vector<Site> surface_sites(const Volume &start) {
   std::vector<Site> sites;
+  for (Index v = 0; std::cmp_less(v, start.mesh.vertices.size()); ++v)
+    if (start.mesh.is_used(v) && start.feature(v) == Triangulation<3>::corner &&
+        !has_ridge(start, v))
+      sites.push_back(site_at(start, v));
   for (const std::vector<Index> &surface : closed_surfaces(start))
     for (Index v : far_apart(start, surface))
-      sites.push_back({.vertex = start.mesh.vertex(v),
-                       .dimension = 2,
-                       .lies_on = start.support_of(v),
-                       .background = start.mesh.background_cell[v]});
+      if (start.feature(v) != Triangulation<3>::corner)
+        sites.push_back(site_at(start, v));
   return sites;
 }
 

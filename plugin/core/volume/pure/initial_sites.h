@@ -6,8 +6,8 @@
 
 namespace anistar {
 
-/// A few points, far from one another, of every surface that has no ridge. The paper
-/// asks for three or more on each.
+/// The corners where no ridge ends, and a few points, far from one another, of every
+/// surface that has no ridge. The paper asks for three or more on each.
 [[nodiscard]] std::vector<Site> surface_sites(const Volume &start);
 
 } // namespace anistar
