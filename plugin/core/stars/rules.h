@@ -31,6 +31,7 @@ enum class ConsistencyMode { off, on, pure };
 /// on no surface: not in a mesh whose facets are given.
 enum class Rule {
   kept,
+  ridge_conformity, ///< before all others: an edge of a ridge that is encroached upon
   facet_size,
   facet_topology,
   facet_radius_edge,
@@ -40,6 +41,14 @@ enum class Rule {
   facet_inconsistency,
   inconsistency
 };
+
+[[nodiscard]] inline bool is_about_size(Rule rule) {
+  return rule == Rule::facet_size || rule == Rule::facet_topology || rule == Rule::size;
+}
+[[nodiscard]] inline bool is_about_facets(Rule rule) {
+  return rule == Rule::facet_size || rule == Rule::facet_topology ||
+         rule == Rule::facet_radius_edge || rule == Rule::facet_inconsistency;
+}
 
 /// Why no round of insertions follows; `none_yet` while one does.
 enum class ConsistencyStop {
@@ -90,6 +99,7 @@ struct ConsistencyCounts {
       ++inconsistency;
       break;
     case Rule::kept:
+    case Rule::ridge_conformity:
       break;
     }
   }

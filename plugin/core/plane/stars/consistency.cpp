@@ -25,10 +25,6 @@ constexpr double shortest_split = .8;
           round % rounds_between_moves == rounds_between_moves - 1);
 }
 
-[[nodiscard]] bool is_about_size(Rule rule) {
-  return rule == Rule::facet_size || rule == Rule::size;
-}
-
 /// The rounds of Algorithm 2, and the judge of Pick_valid.
 class Rounds {
 public:

@@ -14,21 +14,6 @@ constexpr int most_repairs = 40;
 /// ever.
 constexpr double shortest_ridge_edge = 1e-6;
 
-Rule counted_as(PureRule rule) {
-  switch (rule) {
-  case PureRule::cell_size:
-    return Rule::size;
-  case PureRule::cell_radius_edge:
-    return Rule::radius_edge;
-  case PureRule::sliver:
-    return Rule::sliver;
-  case PureRule::cell_consistency:
-    return Rule::inconsistency;
-  default:
-    return Rule::kept;
-  }
-}
-
 /// The first bad simplex of every star that has one, the first of all on top. What was
 /// found before a star has changed is out of date, and left where it is.
 class Agenda {
@@ -81,7 +66,7 @@ public:
   }
 
 private:
-  using StuckSimplex = std::pair<PureRule, StarSimplex>;
+  using StuckSimplex = std::pair<Rule, StarSimplex>;
   StarSet &stars_;
   RidgeEdges &ridges_;
   const Run &run_;
@@ -115,7 +100,7 @@ private:
       if (changed.contains(v))
         continue;
       const StarSet::SurfaceFacet t = largest_facet(v);
-      if (!t.exists() || !insert_valid(bad_facet(t, PureRule::facet_topology)))
+      if (!t.exists() || !insert_valid(bad_facet(t, Rule::facet_topology)))
         continue;
       changed.insert(changed_.begin(), changed_.end());
     }
@@ -191,7 +176,7 @@ private:
     const auto &ends = ridges_.edges()[edge].ends;
     const Index w = ends[ends[0] == v ? 1 : 0];
     const Vertex<3> &a = stars_.site(v).vertex, &b = stars_.site(w).vertex;
-    return {.rule = PureRule::ridge_conformity,
+    return {.rule = Rule::ridge_conformity,
             .star = v,
             .others = {none, none, w},
             .centre = .5 * (a.x + b.x),
@@ -211,7 +196,7 @@ private:
         domain.shape().place(1, ridge.curve, .5 * (a.vertex.x + b.vertex.x)),
         site.background);
     ridges_.split(edge, static_cast<Index>(stars_.size()));
-    return insert(site, PureRule::ridge_conformity);
+    return insert(site, Rule::ridge_conformity);
   }
   /// That a point would encroach upon, and that can be split instead.
   [[nodiscard]] Index encroached_edge(const Vector<3> &x) const {
@@ -245,8 +230,7 @@ private:
       return insert(*picked.site, bad.rule);
     return insert_valid(bad_facet(t, bad.rule));
   }
-  [[nodiscard]] BadSimplex bad_facet(const StarSet::SurfaceFacet &t,
-                                     PureRule rule) const {
+  [[nodiscard]] BadSimplex bad_facet(const StarSet::SurfaceFacet &t, Rule rule) const {
     return {.rule = rule,
             .star = t.star,
             .others = {none, std::min(t.a, t.b), std::max(t.a, t.b)},
@@ -254,16 +238,16 @@ private:
             .radius = std::sqrt(std::max(0., t.ball.square_radius)),
             .patch = stars_.domain().facet(t.ball.facet).patch};
   }
-  bool insert(const Site &site, PureRule rule) {
+  bool insert(const Site &site, Rule rule) {
     changed_ = stars_.insert(site);
     stuck_.resize(stars_.size());
     for (Index v : changed_)
       stuck_[v].clear();
     ++counts_.rounds;
-    if (site.is_on_boundary())
+    if (site.is_on_boundary() && !is_about_facets(rule))
       ++counts_.boundary;
     else
-      counts_.add(counted_as(rule));
+      counts_.add(rule);
     return true;
   }
   /// Until the star changes.

@@ -57,13 +57,13 @@ BadSimplex Rules::judge(Index v, Index a, Index b, const SurfaceBall &ball) cons
   const auto is_inside = [&](Index w) { return !stars_.site(w).is_on_boundary(); };
   if (found.radius >= parameters_.alpha_1 * size_at(ball.centre, site.background) ||
       strays(v, a, b, ball))
-    found.rule = PureRule::facet_size;
+    found.rule = Rule::facet_size;
   else if (is_inside(v) || is_inside(a) || is_inside(b))
-    found.rule = PureRule::facet_topology;
+    found.rule = Rule::facet_topology;
   else if (found.radius > parameters_.rho_0 * shortest)
-    found.rule = PureRule::facet_radius_edge;
+    found.rule = Rule::facet_radius_edge;
   else if (!stars_.has_facet(a, v, b) || !stars_.has_facet(b, v, a))
-    found.rule = PureRule::facet_consistency;
+    found.rule = Rule::facet_inconsistency;
   return found;
 }
 
@@ -84,13 +84,13 @@ BadSimplex Rules::judge(Index v, const LinkTriangle &t,
                    .radius = std::sqrt(std::max(0., t.square_radius))};
   const double shortest = shortest_length<3>(site.vertex.M, s);
   if (found.radius >= parameters_.alpha_0 * size_at(t.centre, site.background))
-    found.rule = PureRule::cell_size;
+    found.rule = Rule::size;
   else if (found.radius > parameters_.rho_0 * shortest)
-    found.rule = PureRule::cell_radius_edge;
+    found.rule = Rule::radius_edge;
   else if (is_sliver(site.vertex, s))
-    found.rule = PureRule::sliver;
+    found.rule = Rule::sliver;
   else if (!is_consistent(v, t, others))
-    found.rule = PureRule::cell_consistency;
+    found.rule = Rule::inconsistency;
   return found;
 }
 

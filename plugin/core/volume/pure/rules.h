@@ -7,30 +7,10 @@
 
 namespace anistar {
 
-/// In their order. What breaks a rule is refined before what breaks a later one.
-enum class PureRule {
-  kept,
-  ridge_conformity, ///< before the eight: an edge of a ridge is in the stars of its
-                    ///< ends
-  facet_size,
-  facet_topology,
-  facet_radius_edge,
-  cell_size,
-  cell_radius_edge,
-  sliver,
-  facet_consistency,
-  cell_consistency
-};
-
-[[nodiscard]] inline bool is_about_size(PureRule rule) {
-  return rule == PureRule::facet_size || rule == PureRule::facet_topology ||
-         rule == PureRule::cell_size;
-}
-
 /// A facet or a cell of a restricted star, the first rule that it breaks there, and its
 /// ball.
 struct BadSimplex {
-  PureRule rule = PureRule::kept;
+  Rule rule = Rule::kept;
   Index star = none;
   StarSimplex others{none, none, none}; ///< beside that of the star, `none` first
   Vector<3> centre = Vector<3>::Zero();
@@ -61,11 +41,11 @@ public:
   /// rule.
   template <class Visit> void each_bad(Index v, Visit visit) const {
     stars_.each_facet(v, [&](Index a, Index b, const SurfaceBall &ball) {
-      if (const BadSimplex found = judge(v, a, b, ball); found.rule != PureRule::kept)
+      if (const BadSimplex found = judge(v, a, b, ball); found.rule != Rule::kept)
         visit(found);
     });
     stars_.each_cell(v, [&](const LinkTriangle &t, const StarSimplex &others) {
-      if (const BadSimplex found = judge(v, t, others); found.rule != PureRule::kept)
+      if (const BadSimplex found = judge(v, t, others); found.rule != Rule::kept)
         visit(found);
     });
   }
