@@ -57,7 +57,7 @@ private:
   static constexpr int patience = 9, patience_with_few = 45;
   static constexpr double least_reduction = .05;
   /// So many trials are made whatever the number of cells.
-  static constexpr double fewest_trials = 45000;
+  static constexpr double fewest_trials = 65000;
   /// With no more failing facets than this, and one for so many cells, it would be a
   /// pity to stop.
   static constexpr std::size_t nearly_none = 20, cells_per_facet_left = 2000;
