@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +20,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import anistar
+from anistar.metric import curvature_metric, graded
+
+Field = Callable[[anistar.Mesh], Float]
 
 PASSES = 3
 COMPLEXITY = 3500.0
@@ -121,6 +125,9 @@ BODIES = {
 }
 
 
+CURVED = tuple(BODIES)[1:]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Made:
     """The last of some passes, its certificate and its processor time."""
@@ -130,18 +137,29 @@ class Made:
     seconds: float
 
 
-def outcomes(body: anistar.Mesh) -> list[Made]:
-    """Return what each of `ASKED` makes of a body, all from the same mesh."""
+def layer_in(body: anistar.Mesh) -> Field:
+    """Return the layer, scaled to a complexity in the body."""
     legs = body.points[body.cells[:, 1:]] - body.points[body.cells[:, :1]]
     density = np.sqrt(np.linalg.det(layer(body.points)))[body.cells].mean(axis=1)
     scale = (COMPLEXITY / (abs(np.linalg.det(legs)) / 6 * density).sum()) ** (2 / 3)
+    return lambda mesh: scale * layer(mesh.points)
+
+
+def curvature(mesh: anistar.Mesh) -> Float:
+    """Return the metric that resolves the curvature of the surfaces of a mesh."""
+    M = curvature_metric(mesh, points_per_circle=40, h_max=WIDE)
+    return graded(mesh, M, factor=1.5, max_distortion=0.25)
+
+
+def outcomes(body: anistar.Mesh, field: Field) -> list[Made]:
+    """Return what each of `ASKED` makes of a body, all from the same mesh."""
     mesh = body
     for _ in range(PASSES - 1):
-        mesh = anistar.remesh(mesh, scale * layer(mesh.points), ASKED[0], geometry=body).mesh
+        mesh = anistar.remesh(mesh, field(mesh), ASKED[0], geometry=body).mesh
     made = []
     for options in ASKED:
         start = time.process_time()
-        done = anistar.remesh(mesh, scale * layer(mesh.points), options, geometry=body)
+        done = anistar.remesh(mesh, field(mesh), options, geometry=body)
         seconds = time.process_time() - start
         certificate = anistar.certify(done.mesh, done.metric)
         made.append(Made(done=done, certificate=certificate, seconds=seconds))
@@ -247,8 +265,11 @@ def show(row: Row) -> None:
 
 def main(folder: str) -> None:
     """Print every table and draw the picture."""
-    for name, body in BODIES.items():
-        show(row_of(name, outcomes(body())))
+    for name, make in BODIES.items():
+        body = make()
+        show(row_of(f"{name}, layer", outcomes(body, layer_in(body))))
+        if name in CURVED:
+            show(row_of(f"{name}, curvature", outcomes(body, curvature)))
     for constants in CONSTANTS:
         show(theorem_row(*constants))
     draw(Path(folder))

@@ -14,8 +14,8 @@ const double unit_excess = elementary::log(longest_unit) - margin;
 /// Lengths up to here, and from its inverse on, are: most are, and need no logarithm.
 constexpr double surely_free = 1.37;
 
-/// An edge between two cells counts for more than all edges of curves at a star: between
-/// the legs of a sharp corner some of these cannot agree.
+/// An edge between two cells counts for more than all edges of curves at a star:
+/// between the legs of a sharp corner some of these cannot agree.
 constexpr int inner_weight = 16;
 
 /// A move may shrink a cell of the star to this fraction of its area.
