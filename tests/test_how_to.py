@@ -44,7 +44,7 @@ def test_the_loop_around_a_command_leaves_what_the_page_says(folder):
     assert [step["complexity"] for step in report["steps"]] == [None, 500, 1000, 2000]
     mesh, fields = anistar.read("run/series_003.vtu")
     assert anistar.validate(mesh, anistar.read("in.mesh")[0]) == []
-    assert set(fields) == {"u", "simplex_ok", "star_ok"}
+    assert set(fields) == {"u", "simplex_ok", "star_ok", "surface_star_ok"}
 
 
 def test_the_study_of_the_page_leaves_its_table_and_picture(folder):

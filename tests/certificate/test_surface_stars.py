@@ -187,6 +187,38 @@ def test_it_does_not_depend_on_threads_units_or_turns_of_the_axes():
     assert np.array_equal(found.in_surface_star, expected)
 
 
+@pytest.mark.parametrize("mesh", [ball(2), annulus(4), two_region_cube(2)], ids=["3D", "2D", "two"])
+def test_it_does_not_depend_on_how_facets_are_written_down(mesh):
+    metric = random_metrics(mesh, 3, stretch={2: 9.0, 3: 1.5}[mesh.dim])
+    expected = certify(mesh, metric).surface_ok
+    assert not expected.all()
+    assert expected.any()
+    turned = mesh.facets.copy()
+    turned[::2] = turned[::2, ::-1]
+    turned[1::3] = np.roll(turned[1::3], 1, axis=1)
+    written = Mesh._trusted(**{**mesh.arrays(), "facets": turned})
+    assert np.array_equal(certify(written, metric).surface_ok, expected)
+
+
+def test_where_the_line_of_centres_misses_the_surface_there_is_no_ball():
+    mesh = ball(1)
+    metric = random_metrics(mesh, 0, stretch=12.0)
+    certificate = certify(mesh, metric)
+    found = [
+        it
+        for v in range(mesh.n_points)
+        for it in explain_surface_star(mesh, metric, v)
+        if np.isnan(it.shift)
+    ]
+    assert found
+    for it in found:
+        assert not it.is_delaunay
+        assert it.violator is None
+        assert it.violator_distance is None
+        assert np.isnan(it.radius)
+        assert not certificate.surface_ok[it.facet]
+
+
 def test_bad_arguments_are_refused_and_named():
     mesh = cube(2)
     M = uniform(mesh, 0.5)

@@ -98,9 +98,8 @@ class Certificate:
         Facets that are in the surface stars of all their vertices, in the order of
         ``mesh.facets``: certified.
     surface_star_ok : (n,) bool
-        Vertices all of whose facets are in the surface star of the vertex: the boundary and the
-        interfaces of the mesh are there what the vertex finds by itself. True at vertices of no
-        facet.
+        Vertices all of whose facets are in the surface star of the vertex. True at vertices of no
+        facet. Whether the star has facets that the mesh has not is not asked.
     in_surface_star : (k, d) bool
         Whether a facet is in the surface star of each of its vertices.
 

@@ -76,7 +76,7 @@ class FacetOfStar:
         Of its surface ball in the metric of v, rounded.
     shift : float
         How far the ball is shifted along its axis from that with its centre in the plane of the
-        facet, in 1 / length**d; 0 on planar patches. See the notes of `explain_star`.
+        facet, in 1 / length**d; 0 on planar patches. See the notes of `explain_surface_star`.
     violator_distance : float or None
         Distance of the violator from the centre in the metric of v, rounded.
     """

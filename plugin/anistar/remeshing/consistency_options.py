@@ -1,30 +1,35 @@
-"""The parameters of Algorithm 2, which refines until every star agrees."""
+"""The parameters of the algorithms that refine until every star agrees."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
 
+import numpy as np
+
 from .. import _core
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConsistencyOptions:
-    """Parameters of Algorithm 2, named as in Boissonnat, Wormser, Yvinec, RR-7712 v2.
+    """Parameters of Algorithms 2 to 5, named as in Boissonnat, Wormser, Yvinec, RR-7712 v2.
+
+    The rules are those of Algorithm 4, where Algorithm 2 has the rules on cells alone.
 
     Parameters
     ----------
     alpha_0 : float
-        Rule 1 refines a simplex whose circumradius is at least ``alpha_0 * sf``; the sizing
+        Rule 4 refines a cell whose circumradius is at least ``alpha_0 * sf``; the sizing
         field sf is 1 in the metric, less where ``gamma_0`` asks for it. A unit equilateral
         triangle has .577, so .95 leaves a quasi-unit mesh alone.
     alpha_1 : float, optional
-        The same for the facets of surfaces and their surface balls; half of `alpha_0` by default.
-        The proof of termination (Theorem 7.1) asks for less than a fortieth.
+        The same for facets of surfaces and their surface balls (rule 1); half of `alpha_0` by
+        default. In 2D, and in 3D with ``until_consistent=True``, only facets that are not
+        consistent are refined. The proof of termination (Theorem 7.1) asks for less than 1/40.
     rho_0 : float
-        Rule 2: largest radius-edge ratio; above sqrt 2, the classical bound for termination.
+        Rules 3 and 5: largest radius-edge ratio; above sqrt 2, the classical bound for termination.
     sigma_0 : float
-        Rule 3: smallest sliverity. In 2D a triangle that passes rule 2 is never a sliver;
+        Rule 6: smallest sliverity. In 2D a triangle that passes rule 5 is never a sliver;
         a regular tetrahedron has .49.
     gamma_0 : float or None
         Bound on the distortion within an element, through the sizing field. None, the
@@ -66,6 +71,10 @@ class ConsistencyOptions:
             raise ValueError(f"delta must be in (0, 1), got {self.delta}")
         if self.gamma_0 is not None and not self.gamma_0 > 1:
             raise ValueError(f"gamma_0 must be above 1, got {self.gamma_0}")
+        if not isinstance(self.candidates, int | np.integer):
+            raise TypeError(f"candidates must be an integer, got {self.candidates!r}")
+        if not isinstance(self.protecting_balls, bool | np.bool_):
+            raise TypeError(f"protecting_balls must be a bool, got {self.protecting_balls!r}")
         if self.candidates < 1:
             raise ValueError(f"candidates must be at least 1, got {self.candidates}")
 

@@ -52,8 +52,10 @@ class RemeshReport:
         ``done``, ``off``, or ``skipped:`` and why; in 3D also how many facets were left, some of
         which the certificate may have mended since, and why the rounds ended.
     consistency : dict
-        Vertices inserted by each rule of Algorithm 2 (``size``, ``radius_edge``, ``sliver``,
-        ``inconsistency``, ``boundary``), ``rounds``, ``stop_reason``, and
+        Vertices inserted by each rule, for cells (``size``, ``radius_edge``, ``sliver``,
+        ``inconsistency``) and for facets of surfaces (``facet_size``, ``facet_topology``,
+        ``facet_radius_edge``, ``facet_inconsistency``), points for cells that became points of
+        surfaces (``boundary``), ``rounds`` (of star sets in 3D: insertions), ``stop_reason``, and
         ``ln_gamma_p90``: 10 % of the edges of the cells that still fail have a larger ln gamma
         between the metrics at their ends (0 when none fails). Compare it with `distortion`.
     simplex_ok, star_ok : float or None

@@ -348,10 +348,12 @@ template <std::size_t d> ExactBall<d> &Circumball<d>::exact() const {
   if (!exact_) {
     require_finite(M_.entries);
     const auto solve = [&](const auto *through) {
-      if constexpr (std::is_same_v<decltype(through), const Simplex<d> *>)
+      if constexpr (std::is_same_v<decltype(through), const Simplex<d> *>) {
         return solution_of<d>(M_, *through);
-      else
+      } else {
+        require_finite(std::array{through->shift});
         return solution_of<d, Exact>(M_, *through);
+      }
     };
     exact_ = std::make_unique<ExactBall<d>>(M_, origin_, std::visit(solve, through_));
   }

@@ -126,8 +126,8 @@ in_order_of_rules(const std::vector<BadCell<d>> &facets,
 /// `d`, `max_rounds`; patience(n_bad); are_rules_everywhere(): other rules also for
 /// cells that are consistent; treat(bad, counts, known): one round, after which `known`
 /// is true of the mesh again; note(failing, best): hears the part of the cells that
-/// fails after a round, and in the best mesh before; surface_stars(): the facets of its
-/// surfaces; rounds_without_gain();
+/// fails after a round, and in the best mesh before; surface_stars(done): the facets
+/// of its surfaces, when this part of the rounds is done; rounds_without_gain();
 /// is_starting(): the mesh is too coarse to be judged, it is the best one, and may
 /// grow; snapshot(), restore(snapshot)
 /// @param known the answers for the mesh, which has no free cells; afterwards for the
@@ -153,7 +153,7 @@ insert_until_consistent(Rounds &rounds, const Run &run,
   };
   SurfaceStars<d> surface;
   const auto look_at_failing = [&] {
-    surface = rounds.surface_stars();
+    surface = rounds.surface_stars(double(counts.rounds) / bounds.max_rounds);
     return failing_fraction(rounds.mesh(), known.bits) +
            static_cast<double>(surface.n_failing()) /
                static_cast<double>(rounds.mesh().n_cells());

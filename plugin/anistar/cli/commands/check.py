@@ -11,6 +11,7 @@ from ...formats import ReadReport, read, read_metric, read_with_report, write
 from ...judging.cell_arrays import cell_arrays
 from ...judging.certificate import Certificate, certify
 from ...judging.quality import quality
+from ...judging.skin import Skin
 from ...meshes.mesh import Mesh
 from ...meshes.validation import validate
 from ...meshes.violations import Violation
@@ -42,14 +43,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--shape",
         choices=("smooth", "polyhedron"),
-        default="smooth",
+        default=Skin().shape,
         help="what the facets mean to surface stars: samples of smooth curves and surfaces, or "
         "the domain itself (default smooth)",
     )
     parser.add_argument(
         "--ridge-angle",
         type=float,
-        default=45.0,
+        default=Skin().ridge_angle,
         help="degrees from which facets meet in a corner or ridge (default 45)",
     )
     parser.add_argument(

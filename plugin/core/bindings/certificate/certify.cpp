@@ -204,9 +204,11 @@ std::pair<Index, double> surface_violator(const MetricMesh &mesh,
          seen_facets<d>(walled, surface_of<d>(mesh, bulges)))
       if (walled.constraints[found.at.cell()][found.at.facet()] == facet) {
         const SymmetricTensor<d> &M = walled.vertices[found.vertices[corner]].M;
+        const double shift = found.seen[corner].shift;
+        if (!std::isfinite(shift)) // there is no ball
+          return std::pair(none, shift);
         return std::pair(
-            DelaunayTest<d>(walled).violator(found.at, M, found.seen[corner]),
-            found.seen[corner].shift);
+            DelaunayTest<d>(walled).violator(found.at, M, found.seen[corner]), shift);
       }
     throw std::invalid_argument("facet " + std::to_string(facet) + " is of no cell");
   });

@@ -78,7 +78,9 @@ encroaching_vertices(CertifiedMesh<d> mesh, std::span<const SeenFacet<d>> facets
                      int threads, const Look &look) {
   const std::size_t n = facets.size();
   const std::size_t n_parts = (n + facets_at_once - 1) / facets_at_once;
-  std::vector<std::array<Index, d>> inside(n);
+  std::array<Index, d> not_seen;
+  not_seen.fill(no_ball);
+  std::vector<std::array<Index, d>> inside(n, not_seen);
   StopSignal stop;
   parallel_items(n_parts, threads, [&] {
     return [&, test = DelaunayTest<d>(mesh)](std::size_t part) mutable {

@@ -40,7 +40,8 @@ template <std::size_t d>
 inline constexpr Index no_ball = -2;
 
 /// For every facet and each of its vertices the first vertex found inside of its
-/// surface ball, `none` where the facet is in the surface star, or `no_ball`.
+/// surface ball, `none` where the facet is in the surface star, or `no_ball`, also
+/// where the look has ended the work.
 template <std::size_t d>
 [[nodiscard]] std::vector<std::array<Index, d>>
 encroaching_vertices(CertifiedMesh<d> mesh, std::span<const SeenFacet<d>> facets,

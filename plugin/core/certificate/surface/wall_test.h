@@ -26,8 +26,9 @@ struct WallStar {
 /// The largest, over the metrics M of the corners and over the apexes, of what the
 /// power of an apex in the M-surface ball of the facet (see surface_facet.h) is short
 /// of zero, relative to the magnitudes of its terms. Positive when an apex lies inside:
-/// then the facet is not in the surface star of one of its vertices. Ties are negative;
-/// exact but for the shift, which is rounded.
+/// then the facet is not in the surface star of one of its vertices. Ties are negative.
+/// Small margins have the exact sign for the rounded shift; it is the certificate that
+/// decides.
 [[nodiscard]] double wall_margin(const WallStar &star);
 
 } // namespace anistar

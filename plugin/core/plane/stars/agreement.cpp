@@ -73,10 +73,8 @@ public:
 
   AgreementCounts run() {
     scan();
-    if (relocate() && walk_on_plateau()) {
+    if (relocate() && walk_on_plateau() && relocate_at_curves())
       polish();
-      relocate_at_curves();
-    }
     count_left();
     return counts_;
   }
@@ -133,13 +131,13 @@ private:
 
   /// Edges of curves come last: few disagree when all others agree, and some between
   /// the legs of sharp corners cannot agree, for which nothing is to drift.
-  void relocate_at_curves() {
+  bool relocate_at_curves() {
     edges_ = Relocator::Edges::all;
     relocator_.heed(edges_);
     for (HalfFacet edge : disagreeing_edges())
       if (mesh_.constraint(edge) != none)
         for_quad(mesh_, edge, [&](Index v) { work_.add(v); });
-    (void)relocate();
+    return relocate();
   }
 
   /// The one search for disagreeing edges.
@@ -217,8 +215,8 @@ private:
     }
   }
 
-  /// The disagreeing edges at the vertices that are still listed, each once, and those of
-  /// curves.
+  /// The disagreeing edges at the vertices that are still listed, each once, and those
+  /// of curves.
   void count_left() {
     std::vector<std::pair<Index, std::size_t>> left;
     std::vector<HalfFacet> star;

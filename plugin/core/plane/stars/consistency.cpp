@@ -41,10 +41,10 @@ public:
   [[nodiscard]] const Triangulation<2> &mesh() const { return mesh_; }
   [[nodiscard]] const Background<2> &background() const { return w_.background; }
   [[nodiscard]] std::size_t n_vertices() const { return mesh_.vertices.size(); }
-  [[nodiscard]] SurfaceStars<2> surface_stars() const {
+  [[nodiscard]] SurfaceStars<2> surface_stars(double done) const {
     SurfaceStars<2> stars{seen_curves(w_), {}};
     stars.inside = encroaching_vertices<2>(certified(mesh_), stars.facets, run_.threads,
-                                           to_the_end(run_.monitor, 0));
+                                           to_the_end(run_.monitor, done));
     return stars;
   }
   [[nodiscard]] int patience(std::size_t) const { return patience_of_rounds; }

@@ -6,7 +6,8 @@
 
 namespace anistar {
 
-/// Each once, but for those in protecting balls, which nothing splits. The curves may ask a projection of the user.
+/// Each once, but for those in protecting balls, which nothing splits. The curves may
+/// ask a projection of the user.
 [[nodiscard]] std::vector<SeenFacet<2>> seen_curves(const Workspace &w);
 
 } // namespace anistar

@@ -114,11 +114,11 @@ public:
   [[nodiscard]] const Triangulation<3> &mesh() const { return mesh_; }
   [[nodiscard]] const Background<3> &background() const { return volume_.background; }
   [[nodiscard]] std::size_t n_vertices() const { return volume_.n_vertices(); }
-  [[nodiscard]] SurfaceStars<3> surface_stars() {
+  [[nodiscard]] SurfaceStars<3> surface_stars(double done) {
     normals_ = SurfaceNormals(volume_, run_.threads);
     SurfaceStars<3> stars{seen_walls(volume_, normals_), {}};
     stars.inside = encroaching_vertices<3>(certified(mesh_), stars.facets, run_.threads,
-                                           to_the_end(run_.monitor, 0));
+                                           to_the_end(run_.monitor, done));
     return stars;
   }
   [[nodiscard]] int patience(std::size_t n_bad) const {
