@@ -201,6 +201,30 @@ def test_a_bound_ends_it_with_another_valid_mesh_and_says_so(options, stop):
     assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
 
 
+@pytest.mark.parametrize("has_balls", [False, True], ids=["split", "balls"])
+@pytest.mark.parametrize("h", [1e-5, 1e-12])
+def test_sizes_that_ask_for_too_many_vertices_end_before_any_is_made(h, has_balls):
+    mesh = cube(3)
+    rules = ConsistencyOptions(protecting_balls=has_balls)
+    options = dataclasses.replace(with_rules(rules), max_vertices=2000, max_refinement=None)
+    done = remesh(mesh, uniform(mesh, h), options)
+    assert done.report.consistency["stop_reason"] == "max_vertices"
+    assert done.report.counts["star_set_sites"] == 0
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
+@pytest.mark.parametrize("has_balls", [False, True], ids=["split", "balls"])
+@pytest.mark.parametrize("h", [3e-3, 1e-4])
+def test_fine_ridges_end_when_the_time_is_up(h, has_balls):
+    mesh = cube(3)
+    rules = ConsistencyOptions(protecting_balls=has_balls)
+    options = dataclasses.replace(with_rules(rules), max_seconds=0.5, max_refinement=None)
+    done = remesh(mesh, uniform(mesh, h), options)
+    assert done.report.consistency["stop_reason"] == "max_seconds"
+    assert not done.report.converged
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
 def test_it_can_be_interrupted():
     mesh = ball()
 

@@ -47,7 +47,8 @@ class ConsistencyOptions:
         point encroaches upon it, which can go on for ever where surfaces meet at less than 90
         degrees in the metric. True gives the points of ridges balls that no other point may
         enter: the stars are those of weighted sites then, and `certify`, which knows no
-        weights, does not find all of them near ridges.
+        weights, does not find all of them near ridges. Where ridges would get more than 4096
+        balls, they get none.
     """
 
     alpha_0: float = 0.95

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <set>
 
 namespace anistar {
@@ -18,6 +20,8 @@ constexpr int most_divisions = 16;
 constexpr double finer = 1.5;
 /// All pairs of balls are compared.
 constexpr std::size_t most_balls = 1 << 12;
+/// Every site is compared with every star: no set of more ends in any useful time.
+constexpr std::size_t most_edges = 1 << 20;
 /// The edges at a corner differ in length by no more than this.
 constexpr double corner_ratio = 1.25;
 constexpr std::size_t least_of_closed = 3;
@@ -32,6 +36,11 @@ struct Chain {
   [[nodiscard]] bool is_closed() const { return vertices.front() == vertices.back(); }
   [[nodiscard]] double edge() const { return arc.back() / double(n); }
 };
+
+/// As many edges as a length asks for, which may be more than an integer holds.
+std::size_t n_edges(double wanted) {
+  return wanted < double(most_edges) ? static_cast<std::size_t>(wanted) : most_edges;
+}
 
 /// The site at a part of the way along a chain.
 Site site_on(const Volume &start, const Chain &chain, std::size_t k) {
@@ -56,19 +65,27 @@ public:
     gather_chains();
   }
 
-  DividedRidges divide() { return sites(); }
-  /// With balls.
+  DividedRidges divide() {
+    insist_on_room();
+    return sites();
+  }
+  /// With balls, unless there would be too many.
   DividedRidges protect() {
-    Protected best = divide_evenly();
-    for (int round = 0; round < most_divisions && !best.too_long.empty(); ++round) {
-      for (std::size_t c : best.too_long)
-        chains_[c].n = static_cast<std::size_t>(finer * double(chains_[c].n) + 1);
-      Protected next = divide_evenly();
-      if (next.n_misfits >= best.n_misfits || next.ridges.sites.size() > most_balls)
+    const std::vector<Chain> without_balls = chains_;
+    std::optional<Protected> best = divide_evenly();
+    if (!best) {
+      chains_ = without_balls;
+      return divide();
+    }
+    for (int round = 0; round < most_divisions && !best->too_long.empty(); ++round) {
+      for (std::size_t c : best->too_long)
+        chains_[c].n = n_edges(finer * double(chains_[c].n) + 1);
+      std::optional<Protected> next = divide_evenly();
+      if (!next || next->n_misfits >= best->n_misfits)
         break;
       best = std::move(next);
     }
-    return std::move(best.ridges);
+    return std::move(best->ridges);
   }
 
 private:
@@ -82,6 +99,19 @@ private:
   const Run &run_;
   std::vector<Chain> chains_;
   std::vector<std::size_t> chain_of_edge_;
+
+  [[nodiscard]] std::size_t n_edges_of_all() const {
+    return std::accumulate(
+        chains_.begin(), chains_.end(), std::size_t{0},
+        [](std::size_t n, const Chain &chain) { return n + chain.n; });
+  }
+  /// Before anything is made of the chains.
+  void insist_on_room() const {
+    const std::size_t n = n_edges_of_all();
+    if (n >= most_edges)
+      throw BudgetSpent{};
+    run_.monitor.insist(n);
+  }
 
   void gather_chains() {
     std::vector<bool> seen(start_.ridges.edges().size(), false);
@@ -123,7 +153,7 @@ private:
   /// Into edges of about unit length that keep to the curve.
   [[nodiscard]] std::size_t first_division(Chain chain) const {
     chain.n = std::max<std::size_t>(chain.is_closed() ? least_of_closed : 1,
-                                    static_cast<std::size_t>(chain.arc.back() + .5));
+                                    n_edges(chain.arc.back() + .5));
     for (int k = 0; k < most_divisions && strays(chain); ++k)
       chain.n += (chain.n + 1) / 2;
     return chain.n;
@@ -131,11 +161,13 @@ private:
   [[nodiscard]] bool strays(const Chain &chain) const {
     if (start_.surface.is_flat(1, chain.curve))
       return false;
-    for (std::size_t k = 0; k < chain.n; ++k)
+    for (std::size_t k = 0; k < chain.n; ++k) {
+      run_.monitor.insist(chain.n);
       if (start_.surface.strays(1, chain.curve, site_on(start_, chain, k).vertex,
                                 site_on(start_, chain, k + 1).vertex,
                                 run_.hausdorff.curve))
         return true;
+    }
     return false;
   }
 
@@ -153,7 +185,7 @@ private:
       for (Chain &chain : chains_)
         for (Index v : ends(chain))
           if (const double bound = corner_ratio * least[v]; chain.edge() > bound) {
-            chain.n = static_cast<std::size_t>(chain.arc.back() / bound) + 1;
+            chain.n = n_edges(chain.arc.back() / bound) + 1;
             is_even = false;
           }
       if (is_even)
@@ -161,8 +193,12 @@ private:
     }
   }
 
-  Protected divide_evenly() {
+  /// None where there would be too many balls.
+  std::optional<Protected> divide_evenly() {
     even_out_corners();
+    if (n_edges_of_all() > most_balls)
+      return std::nullopt;
+    insist_on_room();
     Protected found{.ridges = sites()};
     put_balls(found.ridges);
     find_misfits(found);
@@ -191,6 +227,7 @@ private:
       const Chain &chain = chains_[c];
       Index before = add_end(chain.vertices.front(), chain.curve);
       for (std::size_t k = 1; k <= chain.n; ++k) {
+        run_.monitor.insist(out.sites.size());
         Index here = static_cast<Index>(out.sites.size());
         if (k == chain.n)
           here = add_end(chain.vertices.back(), chain.curve);
@@ -233,7 +270,8 @@ private:
       }
     }
     const auto n = static_cast<Index>(ridges.sites.size());
-    for (Index a = 0; a < n; ++a)
+    for (Index a = 0; a < n; ++a) {
+      run_.monitor.insist(ridges.sites.size());
       for (Index b = 0; b < a; ++b)
         if (!neighbours.contains({b, a}) &&
             !are_apart(ridges.sites[a], ridges.sites[b],
@@ -242,6 +280,7 @@ private:
           found.too_long.insert(chains_at[a].begin(), chains_at[a].end());
           found.too_long.insert(chains_at[b].begin(), chains_at[b].end());
         }
+    }
   }
   /// Whether one of these and one of those end at one corner.
   [[nodiscard]] bool do_meet(const std::set<std::size_t> &these,

@@ -20,8 +20,12 @@ struct DividedRidges {
 
 /// Without balls.
 /// @param start the input mesh on its surfaces and ridges
+/// @throws BudgetSpent when the time is up, or the metric asks for more sites than
+/// there may be vertices, before any is made
 [[nodiscard]] DividedRidges divided_ridges(const Volume &start, const Run &run);
-/// With balls. Where some do not fit after many divisions, they stay as they are.
+/// With balls, unless these are more than some thousands: they are compared with one
+/// another. Where some do not fit after many divisions, they stay as they are.
+/// @throws BudgetSpent as above
 [[nodiscard]] DividedRidges protected_ridges(const Volume &start, const Run &run);
 
 } // namespace anistar

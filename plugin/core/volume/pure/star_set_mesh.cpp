@@ -7,14 +7,24 @@
 namespace anistar {
 namespace {
 
-/// @returns whether the budgets allowed all of them
-bool insert_all(std::span<const Site> sites, const Run &run, StarSet &stars) {
-  for (std::size_t k = 0; k < sites.size(); ++k) {
-    if (!run.look(k, sites.size()))
-      return false;
-    stars.insert(sites[k]);
+/// @throws BudgetSpent
+void insert_all(std::span<const Site> sites, const Run &run, StarSet &stars) {
+  for (const Site &site : sites) {
+    run.monitor.insist(stars.size());
+    if (!run.monitor.look(0)) // each takes a while
+      throw BudgetSpent{};
+    stars.insert(site);
   }
-  return true;
+}
+
+/// The sites that the star set begins with. @returns the edges of the ridges
+std::vector<RidgeEdge> insert_first(const Volume &start, const Run &run,
+                                    bool with_balls, StarSet &stars) {
+  const DividedRidges divided =
+      with_balls ? protected_ridges(start, run) : divided_ridges(start, run);
+  insert_all(divided.sites, run, stars);
+  insert_all(surface_sites(start), run, stars);
+  return divided.edges;
 }
 
 } // namespace
@@ -24,18 +34,15 @@ StarSetMesh mesh_by_stars(const Volume &start, std::span<const Index> region,
   StarSetMesh out;
   const DomainOracle domain(start, region);
   StarSet stars(domain);
-  const DividedRidges divided = parameters.protecting_balls
-                                    ? protected_ridges(start, run)
-                                    : divided_ridges(start, run);
-  if (!insert_all(divided.sites, run, stars) ||
-      !insert_all(surface_sites(start), run, stars)) {
-    out.counts.stop = ConsistencyStop::max_seconds;
-    return out;
+  try {
+    RidgeEdges ridges(insert_first(start, run, parameters.protecting_balls, stars));
+    RefinedStarSet refined = refine_star_set(stars, ridges, run, parameters);
+    out.counts = refined.counts;
+    out.merged = std::move(refined.merged);
+  } catch (const BudgetSpent &) {
+    out.counts.stop =
+        run.is_stopped() ? ConsistencyStop::max_seconds : ConsistencyStop::max_vertices;
   }
-  RidgeEdges ridges(divided.edges);
-  RefinedStarSet refined = refine_star_set(stars, ridges, run, parameters);
-  out.counts = refined.counts;
-  out.merged = std::move(refined.merged);
   out.n_sites = stars.size();
   return out;
 }
