@@ -225,6 +225,16 @@ def test_fine_ridges_end_when_the_time_is_up(h, has_balls):
     assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
 
 
+def test_a_search_for_candidates_ends_when_the_time_is_up():
+    mesh = cube(2)
+    # no tetrahedron is as good as that, so that the search for a valid point never ends
+    rules = ConsistencyOptions(candidates=10**9, sigma_0=10, max_growth=9)
+    options = dataclasses.replace(with_rules(rules), max_seconds=0.5)
+    done = remesh(mesh, uniform(mesh, 0.5), options)
+    assert done.report.consistency["stop_reason"] == "max_seconds"
+    assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
+
+
 def test_it_can_be_interrupted():
     mesh = ball()
 

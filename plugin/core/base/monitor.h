@@ -37,11 +37,13 @@ public:
       return look(fraction);
     return reason_ == StopReason::finished;
   }
+  /// The same in a loop within an item of another, which tells how far the phase is.
+  [[nodiscard]] bool keep_going() { return keep_going(0, told_); }
   /// For a loop that cannot end halfway.
   /// @throws BudgetSpent when it must; that there is no room for so many vertices ends
   /// this loop only, a coarser mesh may have it.
   void insist(std::size_t n_vertices) {
-    if (!has_room(n_vertices) || !keep_going(0, 0))
+    if (!has_room(n_vertices) || !keep_going())
       throw BudgetSpent{};
   }
   /// The same, looking at the clock and at the user every time: for what takes a while.
@@ -78,9 +80,11 @@ private:
   std::string phase_;
   std::size_t calls_ = 0;
   double next_look_ = 0;
+  double told_ = 0; ///< of the phase
   StopReason reason_ = StopReason::finished;
 
-  void tell(double fraction) const {
+  void tell(double fraction) {
+    told_ = fraction;
     if (progress_)
       progress_(phase_, fraction);
   }

@@ -19,7 +19,8 @@ PickValid::Picked PickValid::operator()(const BadSimplex &bad,
   const EllipseSampler<3> ellipse(stars_.star(bad.star).metric());
   Picked picked;
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  for (int k = 0; k < parameters_.candidates && fewest > 0; ++k) {
+  for (int k = 0; k < parameters_.candidates && fewest > 0 && monitor_.keep_going();
+       ++k) {
     Vector<3> x = bad.centre;
     if (k > 0)
       x += ellipse.step(parameters_.delta * bad.radius, random);

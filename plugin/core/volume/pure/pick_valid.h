@@ -9,12 +9,13 @@ namespace anistar {
 
 /// Differs from the paper: the number of points that are tried is bounded, and the one
 /// that is hit by the fewest configurations is taken when all are hit. The size rules
-/// take the first point that can be inserted, the centre of the ball.
+/// take the first point that can be inserted, the centre of the ball. When the time is
+/// up, it ends with what it has.
 class PickValid {
 public:
   PickValid(const StarSet &stars, const Rules &rules,
-            const ConsistencyParameters &parameters)
-      : stars_(stars), rules_(rules), parameters_(parameters) {}
+            const ConsistencyParameters &parameters, Monitor &monitor)
+      : stars_(stars), rules_(rules), parameters_(parameters), monitor_(monitor) {}
 
   struct Picked {
     std::optional<Site> site;
@@ -28,6 +29,7 @@ private:
   const StarSet &stars_;
   const Rules &rules_;
   const ConsistencyParameters &parameters_;
+  Monitor &monitor_;
 
   /// A cell that a new site would bring, as one of its four stars sees it.
   struct NewCell {

@@ -46,7 +46,7 @@ public:
              const ConsistencyParameters &parameters)
       : stars_(stars), ridges_(ridges), run_(run), parameters_(parameters),
         rules_(stars, parameters, run.hausdorff),
-        pick_valid_(stars, rules_, parameters) {
+        pick_valid_(stars, rules_, parameters, run.monitor) {
     for (std::size_t v = 0; v < stars.size(); ++v)
       changed_.push_back(static_cast<Index>(v));
   }
@@ -58,7 +58,8 @@ public:
       merged = merge(stars_, ridges_.edges());
       if (merged.obstacle == MergeObstacle::nothing)
         break;
-      counts_.stop = ConsistencyStop::no_mesh;
+      counts_.stop =
+          run_.is_stopped() ? ConsistencyStop::max_seconds : ConsistencyStop::no_mesh;
       if (round < most_repairs && refine_at(merged.defects))
         refine_all();
     }
@@ -144,8 +145,12 @@ private:
   }
 
   [[nodiscard]] ConsistencyStop stop(bool has_bad) {
+    if (!has_bad && !is_stuck())
+      return ConsistencyStop::consistent;
+    if (run_.is_stopped()) // what was given up then may not be hopeless
+      return ConsistencyStop::max_seconds;
     if (!has_bad)
-      return is_stuck() ? ConsistencyStop::stalled : ConsistencyStop::consistent;
+      return ConsistencyStop::stalled;
     if (counts_.rounds == most_insertions)
       return ConsistencyStop::max_rounds;
     if (!run_.monitor.has_room(stars_.size()))
