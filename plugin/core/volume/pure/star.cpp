@@ -1,5 +1,6 @@
 #include "volume/pure/star.h"
 
+#include "base/errors.h"
 #include "volume/pure/power_test.h"
 
 #include <algorithm>
@@ -138,6 +139,7 @@ bool Star::insert(const Seen &p) {
   const std::vector<Side> sides = rim(inside);
   if (sides.empty() || !is_cycle(sides))
     return false;
+  insist_on_numbers(sides.size());
   corners_.push_back(p);
   join(sides, static_cast<std::uint16_t>(corners_.size() - 1));
   drop(inside);
@@ -158,6 +160,15 @@ bool Star::is_cycle(const std::vector<Side> &sides) const {
   }
   return std::none_of(seen.begin(), seen.end(),
                       [](std::uint8_t bits) { return bits == 1 || bits == 2; });
+}
+
+/// For so many more triangles, and a corner: a closed surface has fewer of these.
+void Star::insist_on_numbers(std::size_t n_more) const {
+  if (const std::size_t n = link_.size() + n_more; n >= nowhere)
+    throw MeshingError("a vertex would have " + std::to_string(n) +
+                           " cells in its star; at most " +
+                           std::to_string(nowhere - 1) + " can be numbered",
+                       vertex_.x);
 }
 
 /// Joins p to the sides of the rim.

@@ -60,6 +60,7 @@ public:
   [[nodiscard]] bool conflicts(const Seen &p) const;
 
   /// Algorithm 1 of the paper, in this star. @returns whether anything has changed
+  /// @throws MeshingError when the star gets more cells than it has numbers for
   bool insert(const Seen &p);
   /// The sides (a, b) of the link that `p` would be joined to.
   void horizon(const Seen &p, std::vector<std::array<Index, 2>> &sides) const;
@@ -120,6 +121,7 @@ private:
   [[nodiscard]] std::vector<std::uint8_t> conflict(const Seen &p) const;
   [[nodiscard]] std::vector<Side> rim(const std::vector<std::uint8_t> &inside) const;
   [[nodiscard]] bool is_cycle(const std::vector<Side> &sides) const;
+  void insist_on_numbers(std::size_t n_more) const;
   void join(const std::vector<Side> &sides, std::uint16_t p);
   void drop(std::vector<std::uint8_t> &inside);
   void drop_corners();
