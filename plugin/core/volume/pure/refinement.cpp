@@ -1,6 +1,7 @@
 #include "volume/pure/refinement.h"
 
 #include <algorithm>
+#include <map>
 #include <queue>
 #include <set>
 
@@ -10,6 +11,10 @@ namespace {
 constexpr int most_insertions = 1 << 20;
 /// Of stars that are consistent and no mesh.
 constexpr int most_repairs = 40;
+/// Of one simplex in one star, when no point is found for it. Every change around it is
+/// an occasion to look again, as costly as an insertion: without this bound over forty
+/// searches failed for each insertion on a torus.
+constexpr int most_trials = 3;
 /// Of the extent of the domain: at small angles the edges of ridges are halved for
 /// ever.
 constexpr double shortest_ridge_edge = 1e-6;
@@ -78,8 +83,9 @@ private:
   ConsistencyCounts counts_;
   std::vector<Index> changed_;
   std::vector<std::set<StuckSimplex>>
-      stuck_;                 ///< of every star, while it does not change
-  std::size_t n_started_ = 0; ///< sites when sizes were in order
+      stuck_; ///< of every star, while it does not change
+  std::vector<std::map<StuckSimplex, int>> trials_; ///< without a point, of every star
+  std::size_t n_started_ = 0;                       ///< sites when sizes were in order
   bool is_starting_ = true;
 
   void refine_all() {
@@ -126,13 +132,16 @@ private:
 
   void look_at_changed() {
     stuck_.resize(stars_.size());
+    trials_.resize(stars_.size());
     for (Index v : changed_)
       agenda_.renew(v);
     for (Index v : changed_) {
       std::optional<BadSimplex> first;
       const auto see = [&](const BadSimplex &bad) {
-        if ((!first || bad.precedes(*first)) &&
-            !stuck_[v].contains({bad.rule, bad.others}))
+        const StuckSimplex simplex{bad.rule, bad.others};
+        if (is_hopeless(v, simplex))
+          stuck_[v].insert(simplex);
+        else if ((!first || bad.precedes(*first)) && !stuck_[v].contains(simplex))
           first = bad;
       };
       if (const Index edge = ridges_.missing(stars_, v); edge != none)
@@ -166,6 +175,10 @@ private:
   [[nodiscard]] double progress() const {
     const double grown = double(stars_.size()) / double(n_started_) - 1;
     return std::min(1., grown / parameters_.max_growth);
+  }
+  [[nodiscard]] bool is_hopeless(Index v, const StuckSimplex &simplex) const {
+    const auto found = trials_[v].find(simplex);
+    return found != trials_[v].end() && found->second >= most_trials;
   }
   [[nodiscard]] bool is_stuck() const {
     return std::any_of(stuck_.begin(), stuck_.end(),
@@ -255,9 +268,11 @@ private:
       counts_.add(rule);
     return true;
   }
-  /// Until the star changes.
+  /// Until the star changes, or for good.
   void give_up(const BadSimplex &bad) {
-    stuck_[bad.star].insert({bad.rule, bad.others});
+    const StuckSimplex simplex{bad.rule, bad.others};
+    stuck_[bad.star].insert(simplex);
+    ++trials_[bad.star][simplex];
     changed_ = {bad.star};
   }
 };
