@@ -186,7 +186,7 @@ private:
   }
 
   bool refine(const BadSimplex &bad) {
-    return bad.is_edge()    ? split(ridges_.find(bad.star, bad.others[2]))
+    return bad.is_edge()    ? split(bad.edge)
            : bad.is_facet() ? insert_valid(bad)
                             : insert_or_snap_valid(bad);
   }
@@ -198,7 +198,8 @@ private:
             .star = v,
             .others = {none, none, w},
             .centre = .5 * (a.x + b.x),
-            .radius = .5 * std::sqrt(quadratic<3>(a.M, b.x - a.x))};
+            .radius = .5 * std::sqrt(quadratic<3>(a.M, b.x - a.x)),
+            .edge = edge};
   }
   /// Balls cannot be split: sites outside of them leave their edges alone.
   bool split(Index edge) {

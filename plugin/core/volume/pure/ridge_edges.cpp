@@ -17,13 +17,6 @@ void RidgeEdges::link(Index edge) {
   }
 }
 
-Index RidgeEdges::find(Index a, Index b) const {
-  for (Index e : at_[a])
-    if (const auto &ends = edges_[e].ends; ends[0] == b || ends[1] == b)
-      return e;
-  return none;
-}
-
 Index RidgeEdges::missing(const StarSet &stars, Index v) const {
   if (std::cmp_greater_equal(v, at_.size()))
     return none;

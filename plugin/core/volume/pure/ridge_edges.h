@@ -11,8 +11,6 @@ public:
   explicit RidgeEdges(std::vector<RidgeEdge> edges);
 
   [[nodiscard]] const std::vector<RidgeEdge> &edges() const { return edges_; }
-  /// The edge between two sites. @pre there is one
-  [[nodiscard]] Index find(Index a, Index b) const;
   /// An edge at v that is not in its star, none if there is none.
   [[nodiscard]] Index missing(const StarSet &stars, Index v) const;
   /// The edge whose diametral ball holds a point most deeply, in the metrics of its two

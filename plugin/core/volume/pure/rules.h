@@ -16,8 +16,9 @@ struct BadSimplex {
   Vector<3> centre = Vector<3>::Zero();
   double radius = 0;  ///< in the metric of the star
   Index patch = none; ///< that the ball of a facet is centred on
+  Index edge = none;  ///< of a ridge, if it is one: two may have the same ends
 
-  [[nodiscard]] bool is_edge() const { return others[1] == none; }
+  [[nodiscard]] bool is_edge() const { return edge != none; }
   [[nodiscard]] bool is_facet() const { return patch != none; }
   /// Whether this one is refined first: of one rule the larger.
   [[nodiscard]] bool precedes(const BadSimplex &other) const {
@@ -25,7 +26,8 @@ struct BadSimplex {
       return rule < other.rule;
     if (radius != other.radius)
       return radius > other.radius;
-    return std::tie(star, others) < std::tie(other.star, other.others);
+    return std::tie(star, others, edge) <
+           std::tie(other.star, other.others, other.edge);
   }
 };
 
