@@ -96,7 +96,10 @@ def test_it_ends_consistent_and_every_star_is_certified(domain, metric, rules):
     assert report.converged
     assert report.star_ok == report.simplex_ok == 1
     assert report.counts["star_set_sites"] == done.mesh.n_points
-    assert certified_anew(done).star_ok.all()
+    certificate = certified_anew(done)
+    assert certificate.star_ok.all()
+    # two ways to the same: on planes exactly, elsewhere the surfaces are not quite the same
+    assert certificate.surface_ok.mean() >= (1 if done.report.counts["curved"] == 0 else 0.99)
     assert validate(done.mesh, reference=mesh, tolerance=0.15) == []
 
 
