@@ -4,6 +4,7 @@
 #include "remesh/kept_quality.h"
 #include "remesh/star_phases.h"
 #include "stars/certify_all.h"
+#include "volume/mesh/surface_arrays.h"
 #include "volume/passes/shaping.h"
 #include "volume/pure/star_set_mesh.h"
 #include "volume/stars/agreement.h"
@@ -112,33 +113,13 @@ void compact(Volume &volume, int threads, PerCell<std::uint8_t> &delaunay) {
   delaunay = std::move(moved);
 }
 
-void extract_facets(const Triangulation<3> &mesh, const SurfaceShape &surface,
-                    VolumeResult &out) {
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
-    for (std::size_t i = 0; i < 4; ++i) {
-      const HalfFacet h(static_cast<Index>(c), i), beyond = mesh.opposite(h);
-      if (mesh.constraint(h) == none || (beyond.exists() && beyond.cell() < h.cell()))
-        continue;
-      const Facet<3> t = mesh.facet(h);
-      out.facets.push_back({t[0], t[2], t[1]});
-      out.facet_tags.push_back(surface.patch(mesh.constraint(h)).tag);
-    }
-}
-
-void extract_ridges(std::span<const RidgeEdge> ridges, const SurfaceShape &surface,
-                    VolumeResult &out) {
-  for (const RidgeEdge &edge : ridges) {
-    if (edge.ends[0] == none || !surface.curve(edge.curve).is_given)
-      continue;
-    out.edges.push_back(edge.ends);
-    out.edge_tags.push_back(surface.curve(edge.curve).tag);
-  }
-}
-
 void take_mesh(Triangulation<3> &mesh, std::span<const RidgeEdge> ridges,
                const SurfaceShape &surface, VolumeResult &out) {
-  extract_facets(mesh, surface, out);
-  extract_ridges(ridges, surface, out);
+  SurfaceArrays arrays = surface_arrays(mesh, ridges, surface);
+  out.facets = std::move(arrays.facets);
+  out.facet_tags = std::move(arrays.facet_tags);
+  out.edges = std::move(arrays.edges);
+  out.edge_tags = std::move(arrays.edge_tags);
   out.vertices = std::move(mesh.vertices);
   out.cells = std::move(mesh.cells);
   out.cell_tags = std::move(mesh.region);
