@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from meshes import certified_anew, cube, two_region_cube
 from remesh3d.domains import cube_with_ridges, cube_with_sheet, layer, touching_cubes, uniform
+from surface.smooth_shapes import ball, torus
 
 from anistar import RemeshOptions, remesh, validate
 from anistar.remeshing.consistency_options import ConsistencyOptions
@@ -203,3 +204,14 @@ def test_a_stricter_rule_against_slivers_leaves_fewer():
             assert validate(done.mesh, reference=mesh, tolerance=1e-9) == []
             thin[sigma_0] += (certified_anew(done).sliverity < 0.45).sum()
     assert thin[0.45] < 0.7 * thin[0.05]
+
+
+@pytest.mark.parametrize("body", [torus(16, 8, 0.4, 0.0), ball(3)], ids=["torus", "ball"])
+def test_consistent_means_that_the_certificate_finds_no_surface_star_failing(body):
+    done = remesh(body, growing(body, 0.35, 0.5), RemeshOptions(until_consistent=True))
+    assert done.report.consistency["stop_reason"] == "consistent"
+    certificate = certified_anew(done)
+    assert certificate.star_ok.all()
+    assert certificate.surface_star_ok.all()
+    assert done.report.surface_star_ok == 1
+    assert validate(done.mesh, reference=body, tolerance=0.3) == []

@@ -87,7 +87,7 @@ public:
   }
   [[nodiscard]] ConsistencyCounts refine(const RemeshSettings &settings,
                                          DelaunayBits &known) {
-    return refine_until_consistent(volume_, run_, settings.parameters, known);
+    return refine_until_consistent(volume_, run_, settings, known);
   }
 
 private:

@@ -2,7 +2,9 @@
 
 #include "stars/algorithm_2.h"
 #include "stars/certify_all.h"
+#include "surface/facet_bulges.h"
 #include "volume/mesh/shell.h"
+#include "volume/mesh/surface_arrays.h"
 #include "volume/stars/agreement.h"
 #include "volume/stars/far_violations.h"
 #include "volume/stars/star_mending.h"
@@ -103,11 +105,14 @@ public:
   /// What a run must be able to return to.
   using Snapshot = VolumeMesh;
 
-  Rounds(Volume &volume, const Run &run, const ConsistencyParameters &parameters,
+  Rounds(Volume &volume, const Run &run, const RemeshSettings &settings,
          const DelaunayBits &known)
-      : volume_(volume), mesh_(volume.mesh), run_(run), parameters_(parameters),
+      : volume_(volume), mesh_(volume.mesh), run_(run),
+        parameters_(settings.parameters), shape_(settings.shape),
         normals_(volume, run.threads), operator_(volume), insertion_(volume, normals_),
-        mover_(volume, insertion_, operator_, parameters.sigma_0) {
+        mover_(volume, insertion_, operator_, settings.parameters.sigma_0) {
+    shape_.frozen_tags.clear(); // which the certificate does not know
+
     progress_.failing = progress_.reference = failing_fraction(mesh_, known.bits);
   }
 
@@ -116,7 +121,7 @@ public:
   [[nodiscard]] std::size_t n_vertices() const { return volume_.n_vertices(); }
   [[nodiscard]] SurfaceStars<3> surface_stars(double done) {
     normals_ = SurfaceNormals(volume_, run_.threads);
-    SurfaceStars<3> stars{seen_walls(volume_, normals_), {}};
+    SurfaceStars<3> stars{facets_as_certified(), {}};
     stars.inside = encroaching_vertices<3>(certified(mesh_), stars.facets, run_.threads,
                                            to_the_end(run_.monitor, done));
     return stars;
@@ -166,6 +171,7 @@ private:
   Triangulation<3> &mesh_;
   const Run &run_;
   const ConsistencyParameters &parameters_;
+  DomainShape shape_;
   SurfaceNormals normals_;
   CavityOperator operator_;
   VolumeInsertion insertion_;
@@ -177,6 +183,28 @@ private:
 
   [[nodiscard]] static double fraction_of(const ConsistencyCounts &counts) {
     return static_cast<double>(counts.rounds) / max_rounds;
+  }
+
+  [[nodiscard]] std::vector<SeenFacet<3>> facets_as_certified() const {
+    const SurfaceArrays surface =
+        surface_arrays(mesh_, volume_.ridges.edges(), volume_.surface);
+    std::vector<Vector<3>> points;
+    points.reserve(mesh_.vertices.size());
+    for (const Vertex<3> &vertex : mesh_.vertices)
+      points.push_back(vertex.x);
+    const std::vector<FacetBulge<3>> bulges = facet_bulges({points,
+                                                            surface.facets,
+                                                            surface.facet_tags,
+                                                            surface.edges,
+                                                            surface.edge_tags,
+                                                            {},
+                                                            shape_});
+    std::vector<SeenFacet<3>> seen;
+    seen.reserve(surface.facets.size());
+    for (std::size_t f = 0; f < surface.facets.size(); ++f)
+      seen.push_back(seen_facet<3>(certified(mesh_), surface.sides[f],
+                                   surface.facets[f], bulges[f]));
+    return seen;
   }
 
   /// One change for each bad cell that shares no vertex with one treated before.
@@ -353,10 +381,10 @@ private:
 } // namespace
 
 ConsistencyCounts refine_until_consistent(Volume &volume, const Run &run,
-                                          const ConsistencyParameters &parameters,
+                                          const RemeshSettings &settings,
                                           DelaunayBits &known) {
-  Rounds rounds(volume, run, parameters, known);
-  return insert_until_consistent(rounds, run, parameters, known);
+  Rounds rounds(volume, run, settings, known);
+  return insert_until_consistent(rounds, run, settings.parameters, known);
 }
 
 } // namespace anistar
