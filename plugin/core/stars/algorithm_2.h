@@ -152,11 +152,11 @@ insert_until_consistent(Rounds &rounds, const Run &run,
         (1 + parameters.max_growth) * static_cast<double>(rounds.n_vertices());
   };
   SurfaceStars<d> surface;
+  // no cell is given for any number of facets
   const auto look_at_failing = [&] {
     surface = rounds.surface_stars(double(counts.rounds) / bounds.max_rounds);
     return failing_fraction(rounds.mesh(), known.bits) +
-           static_cast<double>(surface.n_failing()) /
-               static_cast<double>(rounds.mesh().n_cells());
+           surface.failing_fraction() / static_cast<double>(rounds.mesh().n_cells());
   };
   double failing = look_at_failing();
   std::optional<Best> best(seen(failing));

@@ -44,11 +44,11 @@ template <std::size_t d> bool SurfaceStars<d>::is_consistent(std::size_t facet) 
                      [](Index v) { return v == none; });
 }
 
-template <std::size_t d> std::size_t SurfaceStars<d>::n_failing() const {
+template <std::size_t d> double SurfaceStars<d>::failing_fraction() const {
   std::size_t n = 0;
   for (std::size_t f = 0; f < facets.size(); ++f)
     n += !is_consistent(f);
-  return n;
+  return static_cast<double>(n) / static_cast<double>(facets.size() + 1);
 }
 
 template <std::size_t d>

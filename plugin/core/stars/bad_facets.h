@@ -13,8 +13,9 @@ template <std::size_t d> struct SurfaceStars {
   std::vector<std::array<Index, d>> inside; ///< see encroaching_vertices
 
   [[nodiscard]] bool is_consistent(std::size_t facet) const;
-  /// Facets that are not in the surface stars of all their vertices.
-  [[nodiscard]] std::size_t n_failing() const;
+  /// The part of the facets, below one, that is not in the surface stars of all its
+  /// vertices.
+  [[nodiscard]] double failing_fraction() const;
 };
 
 /// Of those that are not in the surface stars of all their vertices, the rules that
