@@ -1,60 +1,36 @@
 """The code of the page on certificates runs, and its tables are those of the script."""
 
-import importlib.util
 import re
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
+from documents import ROOT, code_blocks, rows_below, run_script, script_of_docs
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+DOCS = ROOT / "docs"
 PAGE = (DOCS / "certificate.md").read_text()
-
-
-def module_of(name):
-    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # where dataclasses look
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
 def script():
     pytest.importorskip("matplotlib")
-    return module_of("make_certificate_pictures")
+    return script_of_docs("make_certificate_pictures")
 
 
 @pytest.fixture(scope="module")
 def tables():
-    return module_of("make_certificate_tables")
+    return script_of_docs("make_certificate_tables")
 
 
 def rows_of(header):
-    """Return the cells of the table below a line that starts with the header, as text."""
-    lines = PAGE[PAGE.index(header) :].splitlines()[2:]
-    table = lines[: next(k for k, line in enumerate(lines) if not line.startswith("|"))]
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table]
+    return rows_below(PAGE, header)
 
 
 def test_a_star_is_checked_by_hand_as_the_page_does_it(tmp_path):
-    blocks = re.findall(r"^```python\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
-    (tmp_path / "page.py").write_text("\n\n".join(blocks))
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "page.py"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("certified: star_ok = 1 (")
-    assert "is" in done.stdout
-    assert re.search(r"vertex \d+ is 0\.\d+ from the centre", done.stdout)
-    (shown,) = re.findall(r"^```text\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
-    assert done.stdout.endswith(shown)
+    said = run_script(tmp_path, "\n\n".join(code_blocks("docs/certificate.md", "python")))
+    assert said.startswith("certified: star_ok = 1 (")
+    assert "is" in said
+    assert re.search(r"vertex \d+ is 0\.\d+ from the centre", said)
+    (shown,) = code_blocks("docs/certificate.md", "text")
+    assert said.endswith(shown)
 
 
 def test_a_layer_that_is_better_resolved_has_more_certified_stars(tables):
