@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from ..base.arguments import require
 from ..base.arrays import Floats
 from ..base.errors import MeshingError
+from ..base.option_names import canonical
 from ..base.report import attributes
 from ..base.telling import telling_once
 from ..judging.certificate import certify_and_keep, share_of
@@ -25,7 +26,6 @@ from ..remeshing.remesh import Remeshed, remesh
 from ..remeshing.report import RemeshReport
 from ..remeshing.verdict import verdict_line
 from ..transfer import TransferOptions, TransferReport, transfer
-from .aliases import canonical
 
 STAGES = ("metric", "remesh", "transfer")
 
