@@ -39,6 +39,7 @@ PACKAGE_ROOMS = [
     {"metric"},
     {"base"},
     {"meshes"},
+    {"objects"},
     {"formats"},
     {"judging", "transfer"},
     {"pictures", "remeshing"},

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from collections.abc import Mapping
+from typing import Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
@@ -33,6 +34,67 @@ class MeshLike(Protocol):
     @property
     def facet_tags(self) -> Ints:
         """Tag of each facet (k,)."""
+
+
+AnyMesh: TypeAlias = object
+"""A `MeshLike`, or another object of which `set_reader` has said how it is read."""
+
+
+class Background(NamedTuple):
+    """A mesh, and the fields that the object holds which it was read from."""
+
+    mesh: MeshLike
+    fields: Mapping[str, Any]
+
+
+class Reader(Protocol):
+    """How mesh objects of other packages are read, and their functions."""
+
+    def opened(self, mesh: AnyMesh) -> Background:
+        """Return the mesh and the fields of an object; raise TypeError if it is none."""
+
+    def values_of(self, function: Any) -> Any:
+        """Return the values of a function object at the points, and other objects as they are."""
+
+
+class _OnlyArrays:
+    """Without `set_reader`, meshes and values are arrays."""
+
+    def opened(self, mesh: AnyMesh) -> Background:
+        raise TypeError(f"mesh must have points, cells, tags and facets, not {type(mesh).__name__}")
+
+    def values_of(self, function: Any) -> Any:
+        return function
+
+
+_reader: Reader = _OnlyArrays()
+
+
+def set_reader(reader: Reader) -> None:
+    """Say how objects are read that are no `MeshLike`; this package knows no others itself."""
+    global _reader
+    _reader = reader
+
+
+def background(mesh: AnyMesh) -> Background:
+    """Return the mesh and the fields of an object.
+
+    Raises
+    ------
+    TypeError
+        If nobody knows how it is read.
+    """
+    return Background(mesh, {}) if isinstance(mesh, MeshLike) else _reader.opened(mesh)
+
+
+def as_mesh(mesh: AnyMesh) -> MeshLike:
+    """Return a `MeshLike` as it is, and the mesh of another object."""
+    return background(mesh).mesh
+
+
+def values_of(function: Any) -> Any:
+    """Return arrays as they are, and what another package's function is at the points."""
+    return _reader.values_of(function)
 
 
 def cell_volumes(mesh: MeshLike) -> Floats:

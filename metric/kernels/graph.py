@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from ..base.arrays import Ints
-from ..base.mesh import MeshLike
+from ..base.mesh import AnyMesh, MeshLike, as_mesh
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,8 +46,9 @@ class VertexGraph:
         )
 
 
-def mesh_edges(mesh: MeshLike) -> Ints:
+def mesh_edges(mesh: AnyMesh) -> Ints:
     """Every edge of the mesh once, (e, 2), smaller index first, sorted."""
+    mesh = as_mesh(mesh)
     graph = edge_graph(mesh)
     sources = graph.sources
     upper = sources < graph.neighbours

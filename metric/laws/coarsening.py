@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike
+from ..base.mesh import AnyMesh, MeshLike, as_mesh
 from ..kernels.elementary import power
 from ..kernels.intersection import intersect
 from ..tensors.checks import check_metric_on, check_result
@@ -14,7 +14,7 @@ from .complexity import complexity
 from .implied import implied_metric
 
 
-def limited_coarsening(mesh: MeshLike, M: Floats, ratio: float = 2.0) -> Floats:
+def limited_coarsening(mesh: AnyMesh, M: Floats, ratio: float = 2.0) -> Floats:
     """Refine a metric where it asks for sizes much larger than those of the mesh.
 
     A recovered Hessian that is too small somewhere makes huge cells there, on which nothing can
@@ -25,7 +25,7 @@ def limited_coarsening(mesh: MeshLike, M: Floats, ratio: float = 2.0) -> Floats:
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the metric.
     M : ndarray (n, d, d)
         Metric, in 1 / length**2.
@@ -45,6 +45,7 @@ def limited_coarsening(mesh: MeshLike, M: Floats, ratio: float = 2.0) -> Floats:
     ValueError
         If `ratio` is out of range, or the mesh has no metric, see `implied_metric`.
     """
+    mesh = as_mesh(mesh)
     check_step("ratio", ratio)
     metric = check_metric_on(mesh, M)
     return check_result(coarsening_limited(mesh, metric, ratio), "the limit of coarsening")

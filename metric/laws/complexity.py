@@ -7,7 +7,7 @@ from math import factorial
 import numpy as np
 
 from ..base.arrays import Floats, Ints
-from ..base.mesh import MeshLike, cell_volumes
+from ..base.mesh import AnyMesh, as_mesh, cell_volumes
 from ..kernels.algebra import log_determinant
 from ..kernels.elementary import exp
 from ..tensors.checks import check_metric_on
@@ -25,7 +25,7 @@ SERIES_ORDER = 12
 """With exponents within 2/3 of their mean the remainder is below .67**13 / 13! = 1e-12."""
 
 
-def complexity(mesh: MeshLike, M: Floats) -> float:
+def complexity(mesh: AnyMesh, M: Floats) -> float:
     """Complexity ``int sqrt(det M) dx`` of the log-Euclidean interpolant of `M`.
 
     In a cell the logarithm of the interpolated metric is linear, so ``sqrt(det M)`` is the
@@ -34,7 +34,7 @@ def complexity(mesh: MeshLike, M: Floats) -> float:
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the metric.
     M : ndarray (n, d, d)
         Metric at the points, in 1 / length**2.
@@ -55,6 +55,7 @@ def complexity(mesh: MeshLike, M: Floats) -> float:
     .. [1] Hermite-Genocchi formula; de Boor, Divided differences, Surveys in Approximation
        Theory 1, 2005.
     """
+    mesh = as_mesh(mesh)
     M = check_metric_on(mesh, M)
     return integral_of_exponential(mesh.cells, cell_volumes(mesh), 0.5 * log_determinant(M))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike
+from ..base.mesh import AnyMesh, as_mesh
 from ..kernels.algebra import congruent, eigenvalues, lower_factor
 from ..kernels.elementary import log
 from ..kernels.graph import mesh_edges
@@ -15,7 +15,7 @@ CANCELLED = 1e-10
 """An eigenvalue below this fraction of the largest is round-off for the most part."""
 
 
-def distortion(mesh: MeshLike, M: Floats) -> Floats:
+def distortion(mesh: AnyMesh, M: Floats) -> Floats:
     """Logarithm of the distortion of `M` over one unit of metric length, for each edge.
 
     The distortion of two metrics is the largest ratio by which they see the length of one
@@ -25,7 +25,7 @@ def distortion(mesh: MeshLike, M: Floats) -> Floats:
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the metric.
     M : ndarray (n, d, d)
         Metric at the points, in 1 / length**2.
@@ -45,6 +45,7 @@ def distortion(mesh: MeshLike, M: Floats) -> Floats:
     .. [1] Boissonnat, Wormser, Yvinec, Anisotropic Delaunay mesh generation, SIAM Journal on
        Computing 44, 2015, section 2.
     """
+    mesh = as_mesh(mesh)
     M = check_metric_on(mesh, M)
     p, q = mesh_edges(mesh).T
     ratio = eigenvalues(congruent(lower_factor(M[p]), M[q]))

@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike, cell_volumes, point_volumes
+from ..base.mesh import AnyMesh, as_mesh, cell_volumes, point_volumes
 from ..kernels.algebra import congruent, lower_factor
 from ..kernels.elementary import power
 from ..tensors.checks import check_metric, check_tensors
@@ -24,7 +24,7 @@ QUADRATURE_CELLS = 30
 """Divisions of an edge of the simplex in the quadrature of Lp norms; 3 digits."""
 
 
-def predicted_error(mesh: MeshLike, M: Floats, H: Floats, *, p: float = 2.0) -> float:
+def predicted_error(mesh: AnyMesh, M: Floats, H: Floats, *, p: float = 2.0) -> float:
     """Predict the Lp norm of the P1 interpolation error on a unit mesh of `M`.
 
     On a perfect unit simplex of M, averaged over its orientation, a quadratic with Hessian H
@@ -35,7 +35,7 @@ def predicted_error(mesh: MeshLike, M: Floats, H: Floats, *, p: float = 2.0) -> 
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the metric and the Hessian.
     M : ndarray (n, d, d)
         Metric at the points, in 1 / length**2.
@@ -61,6 +61,7 @@ def predicted_error(mesh: MeshLike, M: Floats, H: Floats, *, p: float = 2.0) -> 
     .. [1] Loseille, Alauzet, Continuous mesh framework part I, SIAM Journal on Numerical
        Analysis 49, 2011, section 3.
     """
+    mesh = as_mesh(mesh)
     n, d = mesh.points.shape
     if not p >= 1.0:
         raise ValueError(f"p must be at least 1, got {p}")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Floats, Ints
-from ..base.mesh import MeshLike, cell_volumes, point_volumes
+from ..base.mesh import AnyMesh, MeshLike, as_mesh, cell_volumes, point_volumes
 from ..kernels.algebra import determinant
 from ..kernels.graph import mesh_edges
 from ..tensors.checks import check_metric_on
@@ -49,7 +49,7 @@ class Estimate:
         return asdict(self)
 
 
-def estimate(mesh: MeshLike, M: Floats) -> Estimate:
+def estimate(mesh: AnyMesh, M: Floats) -> Estimate:
     """Estimate the mesh that `remesh` will make of a metric, without making it.
 
     A mesh of perfect unit simplices has 2.309 C triangles or 8.49 C tetrahedra, C the
@@ -59,7 +59,7 @@ def estimate(mesh: MeshLike, M: Floats) -> Estimate:
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the metric.
     M : ndarray (n, d, d)
         Metric at the points, in 1 / length**2.
@@ -73,6 +73,7 @@ def estimate(mesh: MeshLike, M: Floats) -> Estimate:
     MetricError
         If `M` is no metric on the points of `mesh`.
     """
+    mesh = as_mesh(mesh)
     M = check_metric_on(mesh, M)
     return estimate_with(mesh, M, distortion(mesh, M))
 

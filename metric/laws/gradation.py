@@ -9,7 +9,7 @@ from math import inf
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike
+from ..base.mesh import AnyMesh, as_mesh
 from ..kernels.elementary import log
 from ..kernels.gradation import grade, wide_graph
 from ..kernels.graph import VertexGraph
@@ -66,7 +66,7 @@ class GrowthLaw:
 
 
 def graded(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     M: Floats,
     *,
     factor: float | None = 1.5,
@@ -82,7 +82,7 @@ def graded(
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the metric.
     M : ndarray (n, d, d)
         Metric at the points, in 1 / length**2.
@@ -126,6 +126,7 @@ def graded(
        the opposite vertices, and visited in rounds until the tolerance holds, the densest
        vertices first, so that the numbering of the points has no influence.
     """
+    mesh = as_mesh(mesh)
     M = check_metric_on(mesh, M)
     law = GrowthLaw(factor=factor, model=model, max_distortion=max_distortion)
     check_tolerance(tolerance)

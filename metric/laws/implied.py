@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike
+from ..base.mesh import AnyMesh, MeshLike, as_mesh
 from ..kernels.algebra import determinant, exp_metric, log_metric
 from ..kernels.spectra import product
 from ..tensors.checks import check_result
@@ -21,7 +21,7 @@ UNIT_SIMPLEX = {
 """Edges from one vertex of the regular simplex of edge length one, in rows."""
 
 
-def implied_metric(mesh: MeshLike) -> Floats:
+def implied_metric(mesh: AnyMesh) -> Floats:
     """Return the metric of which `mesh` is a unit mesh, as nearly as point values can say.
 
     In each simplex there is exactly one metric in which all edges have length one [1]_; at a
@@ -29,7 +29,7 @@ def implied_metric(mesh: MeshLike) -> Floats:
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh.
 
     Returns
@@ -47,6 +47,7 @@ def implied_metric(mesh: MeshLike) -> Floats:
     .. [1] Loseille, Alauzet, Continuous mesh framework part I, SIAM Journal on Numerical
        Analysis 49, 2011, section 2.
     """
+    mesh = as_mesh(mesh)
     n, d = mesh.points.shape
     counts = np.bincount(mesh.cells.ravel(), minlength=n)
     alone = np.flatnonzero(counts == 0)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats, Ints
-from ..base.mesh import MeshLike, cell_volumes, diameter, point_volumes
+from ..base.mesh import AnyMesh, MeshLike, as_mesh, cell_volumes, diameter, point_volumes
 from ..kernels.algebra import eigh
 from ..kernels.elementary import exp, log, power
 from ..kernels.spectra import compose
@@ -34,7 +34,7 @@ ERROR_TOLERANCE = 1e-4
 
 
 def normalised(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     H: Floats,
     *,
     target_complexity: float | None = None,
@@ -50,7 +50,7 @@ def normalised(
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the Hessian.
     H : ndarray (n, d, d)
         Hessian (or any symmetric tensor); absolute values of its eigenvalues are taken.
@@ -83,6 +83,7 @@ def normalised(
     .. [1] Loseille, Alauzet, Continuous mesh framework part I, SIAM Journal on Numerical
        Analysis 49, 2011, section 4. Differs from [1]_ by the floor.
     """
+    mesh = as_mesh(mesh)
     if (target_complexity is None) == (target_error is None):
         raise ValueError(
             "give exactly one of target_complexity and target_error: got "
@@ -99,7 +100,7 @@ def normalised(
 
 
 def normalised_space_time(
-    meshes: Sequence[MeshLike],
+    meshes: Sequence[AnyMesh],
     hessians: Sequence[Floats],
     *,
     target_complexity: float,
@@ -156,7 +157,7 @@ def normalised_space_time(
         )
     steps = check_time_steps(time_steps, len(meshes))
     fields = [
-        _field(mesh, H, h_max, steps=float(n), name=f"Hessian of instant {i}")
+        _field(as_mesh(mesh), H, h_max, steps=float(n), name=f"Hessian of instant {i}")
         for i, (mesh, H, n) in enumerate(zip(meshes, hessians, steps, strict=True))
     ]
     metrics = optimal(fields, target_complexity, p)

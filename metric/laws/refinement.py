@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.arrays import Bools, Floats
-from ..base.mesh import MeshLike
+from ..base.mesh import AnyMesh, MeshLike, as_mesh
 from ..kernels.algebra import congruent, eigenvalues, eigh, lower_factor
 from ..kernels.pieces import pieces
 from ..kernels.spectra import compose, product
@@ -37,7 +37,7 @@ class Refinement:
     excess: float
 
 
-def limited_refinement(mesh: MeshLike, M: Floats, ratio: float | str = "auto") -> Floats:
+def limited_refinement(mesh: AnyMesh, M: Floats, ratio: float | str = "auto") -> Floats:
     """Coarsen a metric where the mesh that carries it cannot resolve what it asks for.
 
     An analytic metric with a thin layer, given at the points of a coarse mesh, says nothing
@@ -46,7 +46,7 @@ def limited_refinement(mesh: MeshLike, M: Floats, ratio: float | str = "auto") -
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the metric.
     M : ndarray (n, d, d)
         Metric, in 1 / length**2.
@@ -69,6 +69,7 @@ def limited_refinement(mesh: MeshLike, M: Floats, ratio: float | str = "auto") -
     ValueError
         If `ratio` is out of range.
     """
+    mesh = as_mesh(mesh)
     check_refinement("ratio", ratio)
     metric = check_metric_on(mesh, M)
     return check_result(refinement_limited(mesh, metric, ratio).metric, "the limited refinement")

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike
+from ..base.given import given_fields
+from ..base.mesh import AnyMesh, MeshLike, background
 from ..kernels.algebra import absolute
 from ..laws.coarsening import coarsening_limited
 from ..laws.distortion import distortion
@@ -28,7 +29,7 @@ logger = logging.getLogger(__name__)
 
 
 def from_fields(
-    mesh: MeshLike, fields: Mapping[str, Any], options: MetricOptions
+    mesh: AnyMesh, fields: Any = None, options: MetricOptions | None = None, **settings: Any
 ) -> tuple[Floats, Ledger]:
     """Make the metric whose unit mesh interpolates `fields` best at the target complexity.
 
@@ -41,13 +42,16 @@ def from_fields(
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the fields.
-    fields : mapping of str to array or Field
+    fields : mapping of str to array or Field, array, name, sequence of names, or None
         Scalars (n,) or vectors (n, k) at the points; objects with ``values``, ``on`` and
-        ``kind`` are read by these.
-    options : MetricOptions
+        ``kind`` are read by these. One array is called ``u``; names are those of fields in the
+        mesh object, of which None means all scalars and vectors at the points.
+    options : MetricOptions, optional
         Target, norm, bounds, gradation and recovery.
+    **settings
+        Single options by name, in place of those of `options`: ``target_complexity=1000``.
 
     Returns
     -------
@@ -68,7 +72,10 @@ def from_fields(
     .. [1] Loseille, Alauzet, Continuous mesh framework part II, SIAM Journal on Numerical
        Analysis 49, 2011.
     """
-    samples = read_fields(mesh, fields)
+    held = background(mesh)
+    mesh = held.mesh
+    options = MetricOptions.chosen(options, settings)
+    samples = read_fields(mesh, given_fields(held.fields, fields).for_metric())
     options.check_target()
     finishing = finishing_on(mesh, options)
     scales = scales_of(samples, options.scale)
@@ -106,10 +113,13 @@ def _normalised_together(
         return base, stages
     weights = {name: field.unit / field.scale for name, field in found.items()}
     largest = max(weights.values())
-    for name, field in found.items():
-        H = field.absolute * (weights[name] / largest)
-        parts.append(absolute(H, SMALLEST_FLOOR * max(float(H.max()), np.finfo(float).tiny)))
-    H = intersection_of(parts, options.intersection_rule)
+    weighted = [field.absolute * (weights[name] / largest) for name, field in found.items()]
+    if any(H.any() for H in weighted):
+        smallest = np.finfo(float).tiny
+        floored = [absolute(H, SMALLEST_FLOOR * max(float(H.max()), smallest)) for H in weighted]
+        H = intersection_of(floored, options.intersection_rule)
+    else:
+        H = weighted[0]  # zero, of which the normalisation makes one size everywhere
     target = _first_target(options, d, largest)
     base = normalised(mesh, H, **target, p=options.p, h_max=size)
     remark = ", ".join(f"{name} / {field.scale:.3g}" for name, field in found.items())

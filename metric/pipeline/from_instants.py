@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike
+from ..base.mesh import AnyMesh, MeshLike, as_mesh
 from ..kernels.algebra import absolute
 from ..kernels.growth import Growth
 from ..laws.coarsening import coarsening_limited
@@ -65,11 +65,12 @@ class SpaceTimeLedger:
 
 
 def from_instants(
-    meshes: Sequence[MeshLike],
+    meshes: Sequence[AnyMesh],
     fields: Sequence[Mapping[str, Any]],
-    options: MetricOptions,
+    options: MetricOptions | None = None,
     *,
     time_steps: ArrayLike | None = None,
+    **settings: Any,
 ) -> tuple[list[Floats], SpaceTimeLedger]:
     """Make the metrics of several instants that share one space-time complexity.
 
@@ -82,10 +83,12 @@ def from_instants(
         The mesh of each instant; it may be the same one.
     fields : sequence of mapping of str to array or Field
         The fields of each instant, with the same names.
-    options : MetricOptions
+    options : MetricOptions, optional
         With a `target_complexity`: vertices times time steps.
     time_steps : array_like (k,), optional
         Time steps taken on each mesh, or other weights of the instants. One each if None.
+    **settings
+        Single options by name, in place of those of `options`.
 
     Returns
     -------
@@ -98,6 +101,16 @@ def from_instants(
         If the lists or the names of the fields do not fit, another target is given, or for the
         reasons of `from_fields`.
     """
+    options = MetricOptions.chosen(options, settings)
+    return _from_instants([as_mesh(mesh) for mesh in meshes], fields, options, time_steps)
+
+
+def _from_instants(
+    meshes: Sequence[MeshLike],
+    fields: Sequence[Mapping[str, Any]],
+    options: MetricOptions,
+    time_steps: ArrayLike | None,
+) -> tuple[list[Floats], SpaceTimeLedger]:
     if options.target_complexity is None or options.max_elements is not None:
         raise ValueError("instants share a target_complexity: give that and no other target or cap")
     if len(meshes) != len(fields) or len(meshes) == 0:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -146,18 +146,24 @@ class MetricOptions:
         ValueError
             If a key is unknown, or given twice under two names.
         """
-        known = {field.name for field in fields(cls)}
-        found: dict[str, Any] = {}
-        for key, value in flattened(options):
-            name = our_name(key)
-            if name not in known:
-                if asks_nothing(key, value):
-                    continue
-                raise ValueError(f"unknown metric option '{key}': {advice(key, known)}")
-            if name in found:
-                raise ValueError(f"metric option '{name}' is given twice, the second as '{key}'")
-            found[name] = value if name == key else our_value(name, value)
-        return cls(**found)
+        return cls(**_by_our_names(options))
+
+    @classmethod
+    def chosen(cls, options: MetricOptions | None, settings: Mapping[str, Any]) -> MetricOptions:
+        """Return options with settings, under the names of `from_dict`, in their place.
+
+        Raises
+        ------
+        TypeError
+            If `options` is something else.
+        ValueError
+            As `from_dict`.
+        """
+        if options is not None and not isinstance(options, cls):
+            raise TypeError(f"options must be MetricOptions, not {type(options).__name__}")
+        return (
+            replace(options or cls(), **_by_our_names(settings)) if settings else options or cls()
+        )
 
     def check_target(self) -> None:
         """Raise ValueError if the options have no target."""
@@ -196,3 +202,18 @@ class MetricOptions:
             model=self.gradation_model,
             max_distortion=self.max_distortion,
         )
+
+
+def _by_our_names(options: Mapping[str, Any]) -> dict[str, Any]:
+    known = {field.name for field in fields(MetricOptions)}
+    found: dict[str, Any] = {}
+    for key, value in flattened(options):
+        name = our_name(key)
+        if name not in known:
+            if asks_nothing(key, value):
+                continue
+            raise ValueError(f"unknown metric option '{key}': {advice(key, known)}")
+        if name in found:
+            raise ValueError(f"metric option '{name}' is given twice, the second as '{key}'")
+        found[name] = value if name == key else our_value(name, value)
+    return found

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike
+from ..base.given import given_values
+from ..base.mesh import AnyMesh, MeshLike, background
 from ..kernels.graph import VertexGraph
 from .confidence import RecoveryConfidence
 from .methods.choice import (
@@ -30,15 +31,15 @@ REPORTED_NOISE = 1e-12
 
 
 def recover_gradient(
-    mesh: MeshLike, u: Any, *, method: str = "auto", space: str | None = None, **options: Any
+    mesh: AnyMesh, u: Any, *, method: str = "auto", space: str | None = None, **options: Any
 ) -> Any:
     """Recover the gradient of a field at the points.
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the field.
-    u : array_like (s,) or (s, k), Field, or mapping of str to these
+    u : array_like (s,) or (s, k), Field, name of a field of the object, or mapping of str to these
         Values of a scalar or of k components; several fields share the work.
     method : str
         See `recover_hessian`; ``green`` and ``mixed_l2`` are the lumped and the consistent
@@ -63,15 +64,15 @@ def recover_gradient(
 
 
 def recover_hessian(
-    mesh: MeshLike, u: Any, *, method: str = "auto", space: str | None = None, **options: Any
+    mesh: AnyMesh, u: Any, *, method: str = "auto", space: str | None = None, **options: Any
 ) -> Any:
     """Recover the Hessian of a field at the points.
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the field.
-    u : array_like (s,) or (s, k), Field, or mapping of str to these
+    u : array_like (s,) or (s, k), Field, name of a field of the object, or mapping of str to these
         Values of a scalar or of k components; several fields come back in one call.
     method : {"auto", "quadratic", "l2", "mixed_l2", "zz", "clement", "green"}
         ``quadratic``: weighted least squares fit of a quadratic over a patch that grows until
@@ -134,7 +135,7 @@ def hessian_and_noise(mesh: MeshLike, u: Any, *, space: str | None = None) -> tu
 
 
 def recovery_confidence(
-    mesh: MeshLike, u: Any, *, method: str = "auto", space: str | None = None, **options: Any
+    mesh: AnyMesh, u: Any, *, method: str = "auto", space: str | None = None, **options: Any
 ) -> Any:
     """Tell how far the Hessian of `recover_hessian` with the same arguments can be trusted.
 
@@ -246,16 +247,20 @@ def _joined_hessian(setting: Setting) -> Floats:
 
 
 def _by_field(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     u: Any,
     space: str | None,
     options: RecoveryOptions,
     recover: Callable[[Setting], Floats | RecoveryConfidence],
 ) -> Any:
     """Recover fields, those in one space together, and return them in the form of `u`."""
+    held = background(mesh)
+    mesh = held.mesh
     is_alone = not isinstance(u, Mapping)
     fields = (
-        {"u": read_samples(mesh, u, space=space)} if is_alone else read_fields(mesh, u, space=space)
+        {"u": read_samples(mesh, given_values(held, u), space=space)}
+        if is_alone
+        else read_fields(mesh, u, space=space)
     )
     found = {}
     for group, samples in grouped(fields):

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..base.arrays import Floats, Ints
-from ..base.mesh import MeshLike, diameter
+from ..base.mesh import AnyMesh, MeshLike, as_mesh, diameter
 from ..kernels.intersection import intersect
 from ..kernels.spectra import product
 from ..tensors.checks import check_result
@@ -16,7 +16,7 @@ from .sizes import from_sizes
 
 
 def curvature_metric(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     *,
     points_per_circle: float | None = None,
     chord_error: float | None = None,
@@ -36,7 +36,7 @@ def curvature_metric(
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh, with its boundary and interfaces as facets.
     points_per_circle : float, optional
         Edges that a full circle of the local radius would get, at least 3.
@@ -68,6 +68,7 @@ def curvature_metric(
     .. [1] Frey, About surface remeshing, 9th International Meshing Roundtable, 2000: the
        geometric metric. Differs from [1]_ in the normal size.
     """
+    mesh = as_mesh(mesh)
     n, d = mesh.points.shape
     size = _size_rule(points_per_circle, chord_error, hausdorff_number)
     largest = diameter(mesh) if h_max is None else h_max

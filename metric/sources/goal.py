@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike
+from ..base.mesh import AnyMesh, as_mesh
 from ..kernels.algebra import absolute, eigenvalues
 from ..laws.normalisation import normalised
 from ..recovery import recover_hessian
@@ -63,12 +63,12 @@ def weighted_hessian(hessians: ArrayLike, weights: ArrayLike) -> Floats:
     return total
 
 
-def flux_hessian(mesh: MeshLike, fluxes: ArrayLike, adjoint_gradient: ArrayLike) -> Floats:
+def flux_hessian(mesh: AnyMesh, fluxes: ArrayLike, adjoint_gradient: ArrayLike) -> Floats:
     """Weighted Hessian of a conservation law: ``sum_ki |d_i z_k| |H(F_ki)|`` [1]_.
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the fields.
     fluxes : array_like (n, d) or (n, k, d)
         Flux F_k of each of k equations at the points.
@@ -91,6 +91,7 @@ def flux_hessian(mesh: MeshLike, fluxes: ArrayLike, adjoint_gradient: ArrayLike)
     ----------
     .. [1] Loseille, Dervieux, Alauzet, Journal of Computational Physics 229, 2010, section 3.3.
     """
+    mesh = as_mesh(mesh)
     n, d = mesh.points.shape
     F, slope = _checked(fluxes, "fluxes"), _checked(adjoint_gradient, "adjoint gradient")
     if F.shape != slope.shape or F.shape[0] != n or F.shape[-1] != d or F.ndim not in (2, 3):
@@ -101,7 +102,7 @@ def flux_hessian(mesh: MeshLike, fluxes: ArrayLike, adjoint_gradient: ArrayLike)
     return weighted_hessian(recover_hessian(mesh, F.reshape(n, -1)), slope.reshape(n, -1))
 
 
-def diffusion_hessian(mesh: MeshLike, u: ArrayLike, adjoint: ArrayLike) -> Floats:
+def diffusion_hessian(mesh: AnyMesh, u: ArrayLike, adjoint: ArrayLike) -> Floats:
     """Weighted Hessian of a diffusion problem: ``sum_k r(H(z_k)) |H(u_k)|`` [1]_.
 
     The error of Galerkin's method in the output is the product of the gradients of two errors,
@@ -110,7 +111,7 @@ def diffusion_hessian(mesh: MeshLike, u: ArrayLike, adjoint: ArrayLike) -> Float
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh that carries the fields.
     u : array_like (n,) or (n, k)
         Solution at the points.
@@ -133,6 +134,7 @@ def diffusion_hessian(mesh: MeshLike, u: ArrayLike, adjoint: ArrayLike) -> Float
        viscous compressible flow and application to mesh adaptation, Journal of Computational
        Physics 376, 2019, section 4.
     """
+    mesh = as_mesh(mesh)
     n = len(mesh.points)
     state, z = _checked(u, "solution"), _checked(adjoint, "adjoint")
     if state.shape != z.shape or state.shape[0] != n or state.ndim > 2:
@@ -147,7 +149,7 @@ def diffusion_hessian(mesh: MeshLike, u: ArrayLike, adjoint: ArrayLike) -> Float
 
 
 def weighted_hessian_metric(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     hessians: ArrayLike,
     weights: ArrayLike,
     *,
@@ -156,12 +158,13 @@ def weighted_hessian_metric(
     h_max: float | Floats | None = None,
 ) -> Floats:
     """Metric of the `weighted_hessian`, normalised; see there and `normalised`."""
+    mesh = as_mesh(mesh)
     H = weighted_hessian(hessians, weights)
     return normalised(mesh, H, target_complexity=target_complexity, p=p, h_max=h_max)
 
 
 def goal_metric(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     u: ArrayLike,
     adjoint: ArrayLike,
     *,
@@ -170,6 +173,7 @@ def goal_metric(
     h_max: float | Floats | None = None,
 ) -> Floats:
     """Metric of the `diffusion_hessian`, normalised; see there and `normalised`."""
+    mesh = as_mesh(mesh)
     H = diffusion_hessian(mesh, u, adjoint)
     return normalised(mesh, H, target_complexity=target_complexity, p=p, h_max=h_max)
 

@@ -7,7 +7,7 @@ import scipy  # loads scipy.optimize, 9 MB, when it is first used
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike, cell_volumes, diameter
+from ..base.mesh import AnyMesh, MeshLike, as_mesh, cell_volumes, diameter
 from ..kernels.algebra import absolute, eigh
 from ..kernels.elementary import exp, log, power
 from ..kernels.spectra import compose
@@ -21,7 +21,7 @@ LARGEST_STEP = 60.0
 
 
 def dwr_metric(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     indicators: ArrayLike,
     *,
     target_complexity: float,
@@ -38,7 +38,7 @@ def dwr_metric(
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh whose cells were estimated.
     indicators : array_like (m,)
         Share of each cell in the error, for instance of a dual weighted residual. Absolute
@@ -70,6 +70,7 @@ def dwr_metric(
     .. [1] Carpio, Prieto, Bermejo, Anisotropic "goal-oriented" mesh adaptivity for elliptic
        problems, SIAM Journal on Scientific Computing 35, 2013, section 4.
     """
+    mesh = as_mesh(mesh)
     check_target("target_complexity", target_complexity)
     if not (np.isfinite(order) and order > 0.0):
         raise ValueError(f"order must be positive, got {order}")

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.mesh import MeshLike, diameter
+from ..base.mesh import AnyMesh, MeshLike, as_mesh, diameter
 from ..base.vectors import norms
 from ..kernels.elementary import log
 from ..laws.gradation import GrowthLaw
@@ -16,7 +16,7 @@ from .distance import distance_to_facets
 
 
 def size_near_points(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     centres: ArrayLike,
     h: ArrayLike,
     *,
@@ -30,7 +30,7 @@ def size_near_points(
 
     Parameters
     ----------
-    mesh : MeshLike
+    mesh : MeshLike or other mesh object
         The mesh at whose points the sizes are wanted.
     centres : array_like (k, d) or (d,)
         The points.
@@ -54,6 +54,7 @@ def size_near_points(
     ValueError
         If a value is out of range or a shape does not fit.
     """
+    mesh = as_mesh(mesh)
     d = mesh.points.shape[1]
     places = np.atleast_2d(np.asarray(centres, dtype=np.float64))
     if places.ndim != 2 or places.shape[1] != d or not np.isfinite(places).all():
@@ -67,7 +68,7 @@ def size_near_points(
 
 
 def size_in_box(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     low: ArrayLike,
     high: ArrayLike,
     h: float,
@@ -79,6 +80,7 @@ def size_in_box(
 
     The other parameters, the result and the errors are those of `size_near_points`.
     """
+    mesh = as_mesh(mesh)
     d = mesh.points.shape[1]
     corners = np.array([low, high], dtype=np.float64)
     if corners.shape != (2, d) or not (corners[0] <= corners[1]).all():
@@ -89,7 +91,7 @@ def size_in_box(
 
 
 def size_near_boundary(
-    mesh: MeshLike,
+    mesh: AnyMesh,
     tags: int | Sequence[int],
     h: float,
     *,
@@ -101,6 +103,7 @@ def size_near_boundary(
     The other parameters, the result and the errors are those of `size_near_points`; a tag that no
     facet has is a ValueError too.
     """
+    mesh = as_mesh(mesh)
     wanted = np.atleast_1d(np.asarray(tags))
     unknown = np.setdiff1d(wanted, mesh.facet_tags)
     if unknown.size:

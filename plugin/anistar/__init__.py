@@ -17,6 +17,7 @@ from .meshes.mesh import Mesh
 from .meshes.validation import validate
 from .meshes.violations import Violation
 from .metric import MetricError, MetricOptions
+from .objects.after_import import follow_imports
 from .remeshing.consistency_options import ConsistencyOptions
 from .remeshing.options import RemeshOptions
 from .remeshing.remesh import Remeshed, remesh
@@ -71,3 +72,5 @@ __all__ = [
     "validate",
     "write",
 ]
+
+follow_imports()

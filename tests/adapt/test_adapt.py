@@ -205,7 +205,7 @@ class TestOptionsFromPlainNames:
             AdaptOptions.from_dict(given)
 
     def test_a_group_that_is_no_mapping_is_named(self):
-        with pytest.raises(TypeError, match="option group 'metric' must be a mapping, not 3"):
+        with pytest.raises(TypeError, match="metric must be MetricOptions, not int"):
             AdaptOptions.from_dict({"metric": 3})
 
 

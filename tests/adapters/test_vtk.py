@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from meshes import cube, slit, square, two_region_cube, two_regions
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersTensor import vtkTensorPrincipalInvariants
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
@@ -129,7 +130,9 @@ def test_the_grid_keeps_its_numbers_when_python_forgets_them():
 
 
 def test_other_data_is_refused_by_its_type():
-    with pytest.raises(TypeError, match="vtkUnstructuredGrid is needed, not vtkPolyData"):
+    with pytest.raises(TypeError, match="vtkUnstructuredGrid is needed, not vtkPoints"):
+        vtk.from_vtk(vtkPoints())
+    with pytest.raises(anistar.FormatError, match="vtkPolyData: the mesh is empty"):
         vtk.from_vtk(vtkPolyData())
     with pytest.raises(anistar.FormatError, match="no triangles and no tetrahedra"):
         vtk.from_vtk(vtkUnstructuredGrid())

@@ -127,8 +127,8 @@ def test_bad_fields_are_named():
     u = layer(mesh)
     with pytest.raises(ValueError, match="a metric needs at least one field, got none"):
         from_fields(mesh, {}, options)
-    with pytest.raises(TypeError, match="fields must be a dict of name to values, got ndarray"):
-        from_fields(mesh, u, options)
+    with pytest.raises(ValueError, match="the mesh object has no field 'T'; it has none"):
+        from_fields(mesh, "T", options)
     with pytest.raises(ValueError, match=r"'p' has shape \(24,\) but the mesh has 25 points"):
         from_fields(mesh, {"u": u, "p": u[1:]}, options)
     with pytest.raises(ValueError, match=r"'T' has shape \(25, 2, 2\): not a scalar or a vector"):
@@ -295,3 +295,12 @@ def test_coarsening_is_limited_at_the_same_target(target):
 def test_a_limit_of_coarsening_is_above_one():
     with pytest.raises(ValueError, match=r"max_coarsening must be above 1, got 0\.5"):
         MetricOptions(max_coarsening=0.5)
+
+
+@pytest.mark.parametrize("scale", ["complexity", "range", "none", 2.0])
+def test_fields_without_curvature_give_one_size_whatever_the_scale(scale):
+    mesh = box(4, 2)
+    flat = {"a": np.ones(len(mesh.points)), "b": mesh.points[:, 0]}
+    M, ledger = from_fields(mesh, flat, target_complexity=60, scale=scale)
+    np.testing.assert_allclose(M, np.tile(60.0 * np.eye(2), (len(M), 1, 1)), rtol=1e-3)
+    assert ledger.reached

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...base.arrays import Floats, Ints
-from ...base.mesh import MeshLike
+from ...base.mesh import AnyMesh, MeshLike, as_mesh, values_of
 from ...kernels.graph import mesh_edges
 from ...tensors.checks import check_values
 from .cells import CellGeometry
@@ -20,12 +20,13 @@ from .cut_mesh import CutMesh
 SPACES = ("P1", "P2", "P0")
 
 
-def p2_nodes(mesh: MeshLike) -> Floats:
+def p2_nodes(mesh: AnyMesh) -> Floats:
     """Nodes (n + e, d) of quadratic elements, in the order in which P2 values are passed.
 
     The points of the mesh come first, then the midpoints of its edges in the order of
     `anistar.metric.mesh_edges`.
     """
+    mesh = as_mesh(mesh)
     edges = mesh_edges(mesh)
     return np.concatenate([mesh.points, mesh.points[edges].mean(axis=1)])
 
@@ -124,7 +125,8 @@ def read_fields(
     if not fields:
         raise ValueError("a metric needs at least one field, got none")
     return {
-        name: read_samples(mesh, field, space=space, name=name) for name, field in fields.items()
+        name: read_samples(mesh, values_of(field), space=space, name=name)
+        for name, field in fields.items()
     }
 
 

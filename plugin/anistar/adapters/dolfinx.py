@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ..base.arrays import Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
+from ..objects import Content, Form, register
 from . import dolfinx_wheel
 
 dolfinx_wheel.make_importable()
@@ -228,3 +229,33 @@ def _entities(domain: Any, dim: int) -> Ints:
     count = domain.topology.index_map(dim).size_local
     rows = dolfinx.mesh.entities_to_geometry(domain, dim, np.arange(count, dtype=np.int32))
     return np.asarray(np.asarray(domain.geometry.input_global_indices)[rows], dtype=np.int32)
+
+
+def _read(other: Any) -> Content:
+    if isinstance(other, DolfinxMesh):
+        mesh = from_dolfinx(
+            other.domain,
+            other.cell_tags,
+            other.facet_tags,
+            other.names,
+            edge_tags=other.edge_tags,
+            vertex_tags=other.vertex_tags,
+        )
+        return Content(mesh, {})
+    return Content(from_dolfinx(other), {})
+
+
+def _make(mesh: Mesh, fields: Any, like: Any) -> Any:
+    made = to_dolfinx(mesh)
+    return made.domain if isinstance(like, dolfinx.mesh.Mesh) else made
+
+
+register(
+    Form(
+        name="dolfinx",
+        accepts=lambda obj: isinstance(obj, dolfinx.mesh.Mesh | DolfinxMesh),
+        read=_read,
+        make=_make,
+        values=lambda obj: point_values(obj) if isinstance(obj, dolfinx.fem.Function) else None,
+    )
+)

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ..base.arrays import Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants
+from ..objects import Content, Form, register
 
 try:
     from mfem import ser as mfem
@@ -161,3 +162,14 @@ def _names(sets: Any, dim: int) -> dict[tuple[int, int], str]:
         if len(members) == 1:
             names.setdefault((dim, members[0]), name)
     return names
+
+
+register(
+    Form(
+        name="mfem",
+        accepts=lambda obj: isinstance(obj, mfem.Mesh),
+        read=lambda mesh: Content(from_mfem(mesh), {}),
+        make=lambda mesh, fields, like: to_mfem(mesh),
+        values=lambda obj: point_values(obj) if isinstance(obj, mfem.GridFunction) else None,
+    )
+)

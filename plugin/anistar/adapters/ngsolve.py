@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from ..base.arrays import AnyArray, Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants
+from ..objects import Content, Form, register
 
 try:
     import ngsolve
@@ -186,3 +187,14 @@ def _read(
     rows = np.ascontiguousarray(nodes[:, : dim + 1] - 1, dtype=np.int32)
     names = {(dim, tag): name for tag, name in enumerate(distinct, start=1)}
     return rows, tags, names
+
+
+register(
+    Form(
+        name="ngsolve",
+        accepts=lambda obj: isinstance(obj, ngsolve.Mesh),
+        read=lambda mesh: Content(from_ngsolve(mesh), {}),
+        make=lambda mesh, fields, like: to_ngsolve(mesh),
+        values=lambda obj: point_values(obj) if isinstance(obj, ngsolve.GridFunction) else None,
+    )
+)

@@ -10,9 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from ..base.arrays import Floats, Ints, Longs
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
+from ..objects import Content, Form, register
 
 try:
     from skfem import MeshTet, MeshTri
+    from skfem.mesh import Mesh as SkfemMesh
 except ImportError as error:
     error.add_note("anistar's scikit-fem adapter needs it: pip install 'anistar[skfem]'")
     raise
@@ -161,3 +163,13 @@ def _shown(mesh: Mesh, dim: int, tags: Ints) -> list[int]:
 
 def _name(mesh: Mesh, dim: int, tag: int) -> str:
     return mesh.names.get((dim, tag), str(tag))
+
+
+register(
+    Form(
+        name="skfem",
+        accepts=lambda obj: isinstance(obj, SkfemMesh),
+        read=lambda mesh: Content(from_skfem(mesh), {}),
+        make=lambda mesh, fields, like: to_skfem(mesh),
+    )
+)

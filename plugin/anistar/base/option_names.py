@@ -41,7 +41,7 @@ def canonical(options: Mapping[str, Any], known: Known) -> dict[str, dict[str, A
         If a group is not a mapping.
     """
     found: dict[str, dict[str, Any]] = {stage: {} for stage in known}
-    for stages, given, value in _placed(options, tuple(known)):
+    for stages, given, value in _placed(options, known):
         name = our_name(given, MMG)
         owner = next((stage for stage in stages if name in known[stage]), None)
         if owner is None:
@@ -55,14 +55,16 @@ def canonical(options: Mapping[str, Any], known: Known) -> dict[str, dict[str, A
     return found
 
 
-def _placed(
-    options: Mapping[str, Any], stages: tuple[str, ...]
-) -> Iterable[tuple[tuple[str, ...], str, Any]]:
-    """Yield each option with the stages that it may belong to."""
+def _placed(options: Mapping[str, Any], known: Known) -> Iterable[tuple[tuple[str, ...], str, Any]]:
+    """Yield each option with the stages that it may belong to.
+
+    The options of a whole stage may be an option themselves.
+    """
+    stages = tuple(known)
     for key, value in flattened(options):
-        if key in stages:
-            if not isinstance(value, Mapping):
-                raise TypeError(f"option group {key!r} must be a mapping, not {value!r}")
+        if key in stages and isinstance(value, Mapping):
             yield from (((key,), name, item) for name, item in flattened(value))
+        elif key in stages and not any(key in names for names in known.values()):
+            raise TypeError(f"option group {key!r} must be a mapping, not {value!r}")
         else:
             yield stages, key, value

@@ -16,6 +16,7 @@ from ..base.atomic import replaced
 from ..base.errors import FormatError
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
+from ..objects import AnyMesh, Content, Form, made, opened, register
 from . import inp_reader, meshio_writer, su2_reader, su2_writer, xdmf_reader
 from .content.assembly import ReadReport, assembled
 from .content.export import exported
@@ -62,7 +63,7 @@ _WRITERS: dict[str, Callable[[Path, Mesh, Mapping[str, Field]], None]] = {
 METRIC = "metric"
 
 
-def read(path: PathLike) -> tuple[Mesh, dict[str, Field]]:
+def read(path: PathLike, *, like: AnyMesh | None = None) -> Any:
     """Read a mesh and its fields.
 
     Single inverted cells are turned and points without a cell dropped, each with a logged
@@ -74,11 +75,14 @@ def read(path: PathLike) -> tuple[Mesh, dict[str, Field]]:
         Medit (`.mesh .meshb`, with the fields of a `.sol` or `.solb` of the same name), Gmsh
         (`.msh`), VTK (`.vtu`, legacy `.vtk`), XDMF with its numbers inside (`.xdmf .xmf`), SU2
         (`.su2`) or Abaqus (`.inp`).
+    like : object or str, optional
+        An object of another form, or its name, such as ``"pyvista"``.
 
     Returns
     -------
     mesh : Mesh
     fields : dict of str to Field
+        Or, with `like`, an object of that form, see `anistar.objects.made`.
 
     Raises
     ------
@@ -86,7 +90,7 @@ def read(path: PathLike) -> tuple[Mesh, dict[str, Field]]:
         If the file is unreadable, truncated, or holds no valid mesh; names the file and why.
     """
     mesh, fields, _ = read_with_report(path)
-    return mesh, fields
+    return (mesh, fields) if like is None else made(mesh, fields, like)
 
 
 def read_with_report(path: PathLike) -> tuple[Mesh, dict[str, Field], ReadReport]:
@@ -105,7 +109,7 @@ def read_with_report(path: PathLike) -> tuple[Mesh, dict[str, Field], ReadReport
 
 
 def write(
-    path: PathLike, mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None
+    path: PathLike, mesh: AnyMesh, fields: Mapping[str, Field | ArrayLike] | None = None
 ) -> None:
     """Write a mesh and its fields under a temporary name, then move them into place.
 
@@ -113,10 +117,10 @@ def write(
     ----------
     path : path
         The suffix chooses the format, see `read`.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
     fields : mapping of str to Field or array, optional
-        A bare array lives on the points. The medit formats put fields into a `.sol` or `.solb`
-        of the same name.
+        A bare array lives on the points. Those that the object holds are written too. The medit
+        formats put fields into a `.sol` or `.solb` of the same name.
 
     Raises
     ------
@@ -126,7 +130,9 @@ def write(
         If the path cannot be written, or the format cannot hold what is given.
     """
     path = Path(path)
-    checked = as_fields(mesh, fields)
+    held = opened(mesh)
+    mesh = held.mesh
+    checked = as_fields(mesh, {**held.fields, **(fields or {})})
     for name, field in checked.items():
         if field.on == "cell_nodes":
             raise FormatError(
@@ -222,3 +228,11 @@ def write_metric(path: PathLike, mesh: Mesh, M: ArrayLike) -> None:
         Metric at the points.
     """
     write(path, mesh, {METRIC: Field(np.asarray(M, dtype=np.float64), "points", "tensor")})
+
+
+def _content(path: Any) -> Content:
+    mesh, fields, _ = read_with_report(path)
+    return Content(mesh, fields)
+
+
+register(Form(name="path", accepts=lambda obj: isinstance(obj, str | os.PathLike), read=_content))

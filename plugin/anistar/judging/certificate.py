@@ -16,6 +16,7 @@ from ..base.core_errors import meshing_errors
 from ..base.report import as_builtin
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
+from ..objects import AnyMesh, metric_on
 from .metric_mesh import Bytes, MetricMesh, Proof, SurfaceMesh, keep_proof, kept_proof
 from .skin import Shape, Skin
 
@@ -231,8 +232,8 @@ class Certificate:
 
 
 def certify(
-    mesh: Mesh,
-    M: ArrayLike,
+    mesh: AnyMesh,
+    M: ArrayLike | str,
     *,
     threads: int = 1,
     shape: Shape = "smooth",
@@ -242,9 +243,9 @@ def certify(
 
     Parameters
     ----------
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         Its facets are the walls of the constrained definition.
-    M : (n, d, d) array
+    M : (n, d, d) array, or name of a field of the object
         Metric at the points, in 1 / length**2.
     threads : int
         Threads to use; the certificate does not depend on it.
@@ -280,6 +281,7 @@ def certify(
     threads = operator.index(threads)
     if threads < 1:
         raise ValueError(f"threads must be at least 1, got {threads}")
+    mesh, M = metric_on(mesh, M)
     judged = _surface_mesh(mesh, M, Skin(shape=shape, ridge_angle=ridge_angle))
     proof = kept_proof(mesh, judged)
     if proof is None:

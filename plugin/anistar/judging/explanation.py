@@ -16,6 +16,7 @@ from ..base.report import attributes
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
 from ..metric.kernels.algebra import solved
+from ..objects import AnyMesh, metric_on
 from .metric_mesh import MetricMesh, SurfaceMesh
 from .skin import Shape, Skin
 
@@ -95,13 +96,13 @@ class FacetOfStar:
         return attributes(self)
 
 
-def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, ...]:
+def explain_star(mesh: AnyMesh, M: ArrayLike | str, vertex: int) -> tuple[SimplexOfStar, ...]:
     """Return, for each simplex of one star, what decides whether the star is certified.
 
     Parameters
     ----------
-    mesh : Mesh
-    M : (n, d, d) array
+    mesh : Mesh or other mesh object
+    M : (n, d, d) array, or name of a field of the object
         Metric at the points, in 1 / length**2.
     vertex : int
         The point whose star is explained.
@@ -118,6 +119,7 @@ def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, 
     ValueError
         If the mesh has no such vertex.
     """
+    mesh, M = metric_on(mesh, M)
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     vertex = _checked(vertex, mesh)
     cells = np.flatnonzero((mesh.cells == vertex).any(axis=1))
@@ -126,8 +128,8 @@ def explain_star(mesh: Mesh, M: ArrayLike, vertex: int) -> tuple[SimplexOfStar, 
 
 
 def explain_surface_star(
-    mesh: Mesh,
-    M: ArrayLike,
+    mesh: AnyMesh,
+    M: ArrayLike | str,
     vertex: int,
     *,
     shape: Shape = "smooth",
@@ -137,8 +139,8 @@ def explain_surface_star(
 
     Parameters
     ----------
-    mesh : Mesh
-    M : (n, d, d) array
+    mesh : Mesh or other mesh object
+    M : (n, d, d) array, or name of a field of the object
         Metric at the points, in 1 / length**2.
     vertex : int
         The point whose surface star is explained.
@@ -165,6 +167,7 @@ def explain_surface_star(
     ``y.My - G.y - shift n.y`` is negative. G is fixed by the vertices of the facet and, for the
     shift 0, by the centre in its plane.
     """
+    mesh, M = metric_on(mesh, M)
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     vertex = _checked(vertex, mesh)
     skin = Skin(shape=shape, ridge_angle=ridge_angle)

@@ -19,6 +19,8 @@ from ..judging.certificate import certify_and_keep, share_of
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric import Ledger, MetricOptions, from_fields
+from ..metric.base.given import AnyFields, given_fields
+from ..objects import AnyMesh, as_mesh, made, opened
 from ..remeshing.demand import check_targets
 from ..remeshing.options import RemeshOptions
 from ..remeshing.project import Project
@@ -110,13 +112,39 @@ class AdaptOptions:
         ValueError
             If a name is unknown or given twice.
         """
+        return cls.chosen(None, options)
+
+    @classmethod
+    def chosen(cls, options: AdaptOptions | None, settings: Mapping[str, Any]) -> AdaptOptions:
+        """Return options with settings, under the names of `from_dict`, in their place.
+
+        A whole stage may be given too: ``remesh=RemeshOptions(...)``.
+
+        Raises
+        ------
+        TypeError
+            If `options` is of another class.
+        ValueError
+            As `from_dict`.
+        """
+        base = cls() if options is None else options
+        require(AdaptOptions, options=base)
+        return base.with_settings(canonical(settings, cls.names())) if settings else base
+
+    @classmethod
+    def names(cls) -> dict[str, list[str]]:
+        """Return the names of the options by stage."""
         defaults = cls()
         known = {
             stage: [item.name for item in fields(getattr(defaults, stage))] for stage in STAGES
         }
-        chosen = canonical(options, {**known, "adapt": ["metric_fields"]})
-        made = {stage: replace(getattr(defaults, stage), **chosen[stage]) for stage in STAGES}
-        return cls(**made, **chosen["adapt"])
+        return {**known, "adapt": ["metric_fields", *STAGES]}
+
+    def with_settings(self, found: Mapping[str, Mapping[str, Any]]) -> AdaptOptions:
+        """Return these options with others, by stage, in their place."""
+        base = replace(self, **found["adapt"])
+        stages = {stage: replace(getattr(base, stage), **found[stage]) for stage in STAGES}
+        return replace(base, **stages, max_refinement=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,34 +200,49 @@ class Adapted:
     metric: Floats
     report: AdaptReport
 
+    def to(self, like: AnyMesh) -> Any:
+        """Return the mesh with its fields in another form, see `anistar.objects.made`."""
+        return made(self.mesh, self.fields, like)
+
 
 def adapt(
-    mesh: Mesh,
-    fields: Mapping[str, Field | ArrayLike],
+    mesh: AnyMesh,
+    fields: AnyFields = None,
     options: AdaptOptions | None = None,
     *,
-    geometry: Mesh | None = None,
+    geometry: AnyMesh | None = None,
     project: Project | None = None,
-) -> Adapted:
+    like: AnyMesh | None = None,
+    **settings: Any,
+) -> Adapted | Any:
     """Adapt a mesh to its fields and carry the fields over.
 
     Parameters
     ----------
-    mesh : Mesh
-        The mesh that carries the fields.
-    fields : mapping of str to Field or array
-        The fields; a bare array means points.
+    mesh : Mesh or other mesh object
+        The mesh that carries the fields: a `Mesh`, a path, or a mesh of meshio, PyVista, VTK,
+        scikit-fem, dolfinx, NGSolve or MFEM.
+    fields : mapping of str to Field or array, array, name, sequence of names, or None
+        The fields; a bare array means points, and one by itself is called ``u``. Names are
+        those of fields in the mesh object, where None means all of them; fields that are not
+        named are carried along.
     options : AdaptOptions, optional
         Options of every stage.
-    geometry : Mesh, optional
+    geometry : Mesh or other mesh object, optional
         The mesh whose boundary is the geometry; `mesh` by default.
     project : callable, optional
         ``project(points, facet_tag)`` moves (k, d) boundary points onto the true boundary.
+    like : object or str, optional
+        Return the adapted mesh in the form of this object, or of this name.
+    **settings
+        Single options of any stage by the names of `AdaptOptions.from_dict`, in place of those
+        of `options`: ``target_complexity=1e4``.
 
     Returns
     -------
     Adapted
-        Fields come back in the form they were given (bare array or `Field`).
+        Fields come back in the form they were given (bare array or `Field`). With `like`, an
+        object of that form with the fields, see `anistar.objects.made`.
 
     Raises
     ------
@@ -208,9 +251,14 @@ def adapt(
     MeshingError
         If the mesher cannot finish, or cannot keep to `max_elements`.
     """
-    options = options if options is not None else AdaptOptions()
-    require(AdaptOptions, options=options)
-    return adapt_to(mesh, fields, options, geometry=geometry, project=project)
+    held = opened(mesh)
+    options = AdaptOptions.chosen(options, settings)
+    given = given_fields(held.fields, fields)
+    if held.fields and given.names is not None and options.metric_fields is None:
+        options = replace(options, metric_fields=given.names)
+    shape = held.geometry if geometry is None else as_mesh(geometry, "geometry")
+    done = adapt_to(held.mesh, given.fields, options, geometry=shape, project=project)
+    return done if like is None else done.to(like)
 
 
 class Wanted(NamedTuple):

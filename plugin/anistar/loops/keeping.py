@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from numpy.typing import ArrayLike
+
 from ..base.arguments import require
-from ..base.arrays import Floats
 from ..judging.quality import UNIT, metric_lengths
-from ..meshes.mesh import Mesh
 from ..meshes.topology import unique_edges
 from ..metric import ELEMENTS_PER_COMPLEXITY, check_metric, complexity, implied_metric
 from ..metric.laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY
+from ..objects import AnyMesh, metric_on
 
 # Of the metric that a real mesh implies, per complexity of the metric it was made for.
 _COMPLEXITY_OF_REAL_MESHES = {
@@ -65,13 +66,13 @@ class KeepOptions:
             raise ValueError(f"longest must be above sqrt(2), got {self.longest}")
 
 
-def needs_adaptation(mesh: Mesh, M: Floats, keep: KeepOptions | None = None) -> bool:
+def needs_adaptation(mesh: AnyMesh, M: ArrayLike | str, keep: KeepOptions | None = None) -> bool:
     """Return whether a mesh is too far from a metric to be kept.
 
     Parameters
     ----------
-    mesh : Mesh
-    M : (n, d, d) float64
+    mesh : Mesh or other mesh object
+    M : (n, d, d) array, or name of a field of the object
         Metric at its points.
     keep : KeepOptions, optional
         How far that may be.
@@ -83,8 +84,9 @@ def needs_adaptation(mesh: Mesh, M: Floats, keep: KeepOptions | None = None) -> 
     """
     keep = KeepOptions() if keep is None else keep
     require(KeepOptions, keep=keep)
-    M = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
-    lengths = metric_lengths(mesh, M, unique_edges(mesh.cells, mesh.n_points))
+    mesh, M = metric_on(mesh, M)
+    metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
+    lengths = metric_lengths(mesh, metric, unique_edges(mesh.cells, mesh.n_points))
     too_long, too_short = (lengths > UNIT[1]).mean(), (lengths < UNIT[0]).mean()
     if lengths.max() > keep.longest or too_long > keep.under:
         return True
@@ -93,4 +95,4 @@ def needs_adaptation(mesh: Mesh, M: Floats, keep: KeepOptions | None = None) -> 
     if math.isinf(keep.over):
         return False
     own = complexity(mesh, implied_metric(mesh)) / _COMPLEXITY_OF_REAL_MESHES[mesh.dim]
-    return bool(own > (1.0 + keep.over) * complexity(mesh, M))
+    return bool(own > (1.0 + keep.over) * complexity(mesh, metric))

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.arguments import require
 from ..base.arrays import Floats
 from ..base.errors import MeshingError
 from ..base.report import Reportable, as_builtin
@@ -19,6 +18,7 @@ from ..base.telling import telling_once
 from ..judging.interpolation_error import interpolation_error
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
+from ..objects import AnyMesh, as_mesh, made, opened, values_of
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
 from .adapt import AdaptOptions, AdaptReport, Wanted, adapt_to, metric_field_names, metric_for
@@ -107,6 +107,11 @@ class LoopError(MeshingError):
         self.loop = loop
 
 
+def solving_on(solve: Solve, like: AnyMesh) -> Solve:
+    """Return a solver of `Mesh` that lets another see the meshes in the form of `like`."""
+    return lambda mesh, fields: solve(made(mesh, {}, like), fields)
+
+
 class _State(NamedTuple):
     """The mesh and fields to solve on next, and where they come from."""
 
@@ -121,13 +126,15 @@ class _State(NamedTuple):
 @telling_once()
 def adapt_loop(
     solve: Solve,
-    mesh: Mesh,
-    options: LoopOptions,
+    mesh: AnyMesh,
+    options: LoopOptions | None = None,
     *,
-    geometry: Mesh | None = None,
+    geometry: AnyMesh | None = None,
     project: Project | None = None,
     callback: Callable[[Step], object] | None = None,
     finished: Sequence[Step] = (),
+    like: AnyMesh | None = None,
+    **settings: Any,
 ) -> Loop:
     """Solve and adapt until the options say stop.
 
@@ -136,11 +143,11 @@ def adapt_loop(
     solve : callable
         ``solve(mesh, fields)`` returns the new fields; it gets ``{}`` on the first call, then
         its last fields on the new mesh.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         The first mesh. Its boundary is the geometry of every mesh.
-    options : LoopOptions
+    options : LoopOptions, optional
         What to adapt to and when to stop.
-    geometry : Mesh, optional
+    geometry : Mesh or other mesh object, optional
         Another mesh whose boundary is the geometry.
     project : callable, optional
         ``project(points, facet_tag)`` moves (k, d) boundary points onto the true boundary.
@@ -149,6 +156,11 @@ def adapt_loop(
     finished : sequence of Step
         Steps of a loop that was interrupted, such as `RunFolder.load` returns: this one goes on
         after them, and they come first in its result.
+    like : object or str, optional
+        Give `solve` its meshes in the form of this object, or of this name.
+    **settings
+        Single options by name, of the loop or of its adaptations, in place of those of
+        `options`: ``complexities=(500, 1000), gradation_factor=1.5``.
 
     Returns
     -------
@@ -162,18 +174,21 @@ def adapt_loop(
         If `solve` raises or returns what no metric can be made of, or the mesher fails. The
         message names the iteration; the exception carries the finished steps.
     """
-    require(LoopOptions, options=options)
+    options = LoopOptions.chosen(options, settings)
+    held = opened(mesh)
+    first = held.mesh
     check_targets(
-        mesh, options.adapt.metric, options.sure_complexities(mesh.dim), options.adapt.remesh
+        first, options.adapt.metric, options.sure_complexities(first.dim), options.adapt.remesh
     )
-    geometry = geometry if geometry is not None else mesh
+    shape = (held.geometry or first) if geometry is None else as_mesh(geometry, "geometry")
+    solve = solve if like is None else solving_on(solve, like)
     steps, wanted = list(finished), None
     try:
         while not steps or (reason := _reason_to_stop(steps, options)) is None:
             state = (
-                _adapted(steps, options, wanted, geometry, project)
+                _adapted(steps, options, wanted, shape, project)
                 if steps
-                else _State(0, None, mesh, {}, None, None)
+                else _State(0, None, first, {}, None, None)
             )
             step, wanted = _judged(_solved(solve, state, options), steps, options)
             steps.append(step)
@@ -192,6 +207,7 @@ def _solved(solve: Solve, state: _State, options: LoopOptions) -> Step:
     seconds = time.perf_counter() - started
     if not isinstance(fields, Mapping):
         raise TypeError(f"solve must return a dict of fields, not {type(fields).__name__}")
+    fields = {name: values_of(values) for name, values in fields.items()}
     checked = as_fields(state.mesh, fields)
     _refuse_nan(state.mesh, checked)
     qoi = None if options.qoi is None else float(options.qoi(state.mesh, dict(fields)))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from ..base.arguments import require
 from ..meshes.mesh import Mesh
 from .adapt import AdaptOptions
+from .adapt_settings import with_adapt_settings
 from .keeping import KeepOptions
 from .settling import Settled, check_max_coarsening
 
@@ -100,6 +101,21 @@ class LoopOptions:
             )
         if not self.complexities and self.target_error is None and self.rtol is None:
             raise ValueError("give complexities, target_error, or qoi with rtol")
+
+    @classmethod
+    def chosen(cls, options: LoopOptions | None, settings: Mapping[str, Any]) -> LoopOptions:
+        """Return options with settings in their place: their own, and those of `AdaptOptions`.
+
+        Raises
+        ------
+        TypeError
+            If `options` is of another class.
+        ValueError
+            If a name is unknown or given twice, or nothing says when to stop.
+        """
+        if options is not None:
+            require(LoopOptions, options=options)
+        return with_adapt_settings(cls, options, settings)
 
     def complexity_after(self, iteration: int, dim: int, skipped: int = 0) -> float | None:
         """Return the target complexity after a solve, None when there is none left.

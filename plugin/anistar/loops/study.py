@@ -17,9 +17,10 @@ from ..meshes.fields import as_fields
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes
 from ..metric.kernels.elementary import log, power
+from ..objects import AnyMesh, as_mesh, opened
 from ..remeshing.remesh import remesh
 from .adapt import AdaptOptions
-from .loop import Solve, Step, adapt_loop
+from .loop import Solve, Step, adapt_loop, solving_on
 from .loop_options import LoopOptions
 from .settling import Settled
 
@@ -122,7 +123,7 @@ class Study:
 
 def convergence_study(
     solve: Solve,
-    mesh: Mesh,
+    mesh: AnyMesh,
     complexities: Sequence[float],
     *,
     error: ErrorFunction | None = None,
@@ -132,8 +133,10 @@ def convergence_study(
     max_coarsening: float | None = 2.0,
     settled: Settled | None = None,
     options: AdaptOptions | None = None,
-    geometry: Mesh | None = None,
+    geometry: AnyMesh | None = None,
     baselines: Sequence[str] = (),
+    like: AnyMesh | None = None,
+    **settings: Any,
 ) -> Study:
     """Measure the error on meshes adapted to growing complexities.
 
@@ -141,7 +144,7 @@ def convergence_study(
     ----------
     solve : callable
         ``solve(mesh, fields)`` returns fields, as in `adapt_loop`.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         The first mesh.
     complexities : sequence of float
         At least two target complexities.
@@ -161,11 +164,15 @@ def convergence_study(
         that every row of the table has had as many.
     options : AdaptOptions, optional
         Options of each adaptation.
-    geometry : Mesh, optional
+    geometry : Mesh or other mesh object, optional
         Another mesh whose boundary is the geometry.
     baselines : sequence of {"uniform", "isotropic"}
         Kinds of meshes to compare with, of the same complexities: of one size everywhere, or
         adapted in size but not in shape.
+    like : object or str, optional
+        Give `solve` its meshes in the form of this object, or of this name.
+    **settings
+        Single options of an adaptation by name, in place of those of `options`.
 
     Returns
     -------
@@ -183,26 +190,29 @@ def convergence_study(
     measure = error if error is not None else _error_against(exact, field)  # type: ignore[arg-type]
     repeated = tuple(value for value in complexities for _ in range(repeats))
     loop = LoopOptions(
-        adapt=options if options is not None else AdaptOptions(),
+        adapt=AdaptOptions.chosen(options, settings),
         complexities=repeated,
         max_iterations=len(repeated),
         max_coarsening=max_coarsening,
         settled=settled,
     )
-    steps = _last_of_each(adapt_loop(solve, mesh, loop, geometry=geometry).steps, repeats)
+    held = opened(mesh)
+    first = held.mesh
+    shape = (held.geometry or first) if geometry is None else as_mesh(geometry, "geometry")
+    solve = solve if like is None else solving_on(solve, like)
+    steps = _last_of_each(adapt_loop(solve, first, loop, geometry=shape).steps, repeats)
     others: dict[str, tuple[StudyRow, ...]] = {}
     for kind in baselines:
         if kind == "uniform":
-            shape = geometry if geometry is not None else mesh
-            meshes = [_uniform(mesh, shape, value) for value in complexities]
+            meshes = [_uniform(first, shape, value) for value in complexities]
             solved = [(one, dict(solve(one, {}))) for one in meshes]
         else:
-            made = adapt_loop(solve, mesh, _isotropic(loop), geometry=geometry).steps
+            made = adapt_loop(solve, first, _isotropic(loop), geometry=shape).steps
             solved = [(step.mesh, step.fields) for step in _last_of_each(made, repeats)]
         others[kind] = _rows(complexities, solved, measure)
     table = _rows(complexities, [(step.mesh, step.fields) for step in steps], measure)
     counts, errors = [row.points for row in table], [row.error for row in table]
-    return Study(table, observed_order(counts, errors, mesh.dim), steps, others)
+    return Study(table, observed_order(counts, errors, first.dim), steps, others)
 
 
 def _last_of_each(steps: Sequence[Step], repeats: int) -> tuple[Step, ...]:

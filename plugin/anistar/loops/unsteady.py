@@ -20,11 +20,13 @@ from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric import from_fields
 from ..metric.pipeline.scaling import Scale, scale_of
+from ..objects import AnyMesh, as_mesh, made, opened, values_of
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
 from ..remeshing.remesh import remesh
 from ..transfer import TransferOptions, transfer
 from .adapt import AdaptOptions, metric_field_names
+from .adapt_settings import with_adapt_settings
 from .keeping import KeepOptions, needs_adaptation
 from .settling import check_max_coarsening
 
@@ -82,6 +84,23 @@ class UnsteadyOptions:
             require(KeepOptions, keep=self.keep)
         check_max_coarsening(self.max_coarsening, self.adapt)
 
+    @classmethod
+    def chosen(
+        cls, options: UnsteadyOptions | None, settings: Mapping[str, Any]
+    ) -> UnsteadyOptions:
+        """Return options with settings in their place: their own, and those of `AdaptOptions`.
+
+        Raises
+        ------
+        TypeError
+            If `options` is of another class.
+        ValueError
+            If a name is unknown or given twice.
+        """
+        if options is not None:
+            require(UnsteadyOptions, options=options)
+        return with_adapt_settings(cls, options, settings)
+
 
 @dataclass(frozen=True, eq=False)
 class Instant:
@@ -135,14 +154,16 @@ class Unsteady:
 @telling_once()
 def unsteady_loop(
     advance: Advance,
-    mesh: Mesh,
+    mesh: AnyMesh,
     fields: Initial,
     times: Sequence[float],
     options: UnsteadyOptions | None = None,
     *,
-    geometry: Mesh | None = None,
+    geometry: AnyMesh | None = None,
     project: Project | None = None,
     callback: Callable[[Instant], object] | None = None,
+    like: AnyMesh | None = None,
+    **settings: Any,
 ) -> Unsteady:
     """Solve a problem in time on meshes that follow the solution.
 
@@ -157,7 +178,7 @@ def unsteady_loop(
     advance : callable
         ``advance(mesh, fields, begin, end)`` returns the fields at `end`. It is called again
         for instants that are solved again, so it must depend on its arguments only.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         The first mesh. Its boundary is the geometry of every mesh.
     fields : mapping of str to Field or array, or callable
         The fields at the first time. ``fields(mesh)`` returns them on any mesh, so that what the
@@ -165,13 +186,18 @@ def unsteady_loop(
     times : sequence of float
         Instants in ascending order, at least two.
     options : UnsteadyOptions, optional
-    geometry : Mesh, optional
+    geometry : Mesh or other mesh object, optional
         Another mesh whose boundary is the geometry.
     project : callable, optional
         ``project(points, facet_tag)`` moves (k, d) boundary points onto the true boundary.
     callback : callable, optional
         ``callback(instant)`` for the first instant and then each one that is final, in order:
         the place to write files, see `SeriesWriter`.
+    like : object or str, optional
+        Give `advance` its meshes in the form of this object, or of this name.
+    **settings
+        Single options by name, of the loop or of its adaptations, in place of those of
+        `options`: ``window=8, target_complexity=1000``.
 
     Returns
     -------
@@ -191,15 +217,18 @@ def unsteady_loop(
        adaptation for time-dependent problems, Journal of Computational Physics 222 (2007),
        sections 3 and 4.
     """
-    options = UnsteadyOptions() if options is None else options
-    require(UnsteadyOptions, options=options)
+    options = UnsteadyOptions.chosen(options, settings)
+    held = opened(mesh)
+    first = held.mesh
     instants = _ascending(times)
     if options.adapt.metric.has_count:
-        target = options.adapt.metric.complexity_for(mesh.dim)
-        check_targets(mesh, options.adapt.metric, [target], options.adapt.remesh)
-    shape = _Shape(mesh, geometry if geometry is not None else mesh, project)
-    now = Instant(instants[0], mesh, dict(fields(mesh) if callable(fields) else fields))
-    as_fields(mesh, now.fields)
+        target = options.adapt.metric.complexity_for(first.dim)
+        check_targets(first, options.adapt.metric, [target], options.adapt.remesh)
+    outline = (held.geometry or first) if geometry is None else as_mesh(geometry, "geometry")
+    shape = _Shape(first, outline, project)
+    advance = advance if like is None else advancing_on(advance, like)
+    now = Instant(instants[0], first, dict(fields(first) if callable(fields) else fields))
+    as_fields(first, now.fields)
     carry = partial(_evaluated, fields) if callable(fields) else partial(_carried, options.adapt)
     windows: list[Window] = []
     for ends in _windows(instants, options.window):
@@ -214,6 +243,11 @@ def unsteady_loop(
         windows.append(window)
         now, carry = history[-1], partial(_carried, options.adapt)
     return Unsteady(now, tuple(windows))
+
+
+def advancing_on(advance: Advance, like: AnyMesh) -> Advance:
+    """Return a solver on `Mesh` that lets another see the meshes in the form of `like`."""
+    return lambda mesh, fields, begin, end: advance(made(mesh, {}, like), fields, begin, end)
 
 
 Carry = Callable[[Instant, Mesh], tuple[Fields, dict[str, Any] | None]]
@@ -286,9 +320,10 @@ def _advanced(advance: Advance, start: Instant, ends: list[float]) -> list[Insta
     history = [start]
     for end in ends:
         now = history[-1]
-        found = advance(now.mesh, dict(now.fields), now.time, end)
+        returned = advance(now.mesh, dict(now.fields), now.time, end)
+        found = {name: values_of(values) for name, values in returned.items()}
         as_fields(now.mesh, found)
-        history.append(Instant(end, now.mesh, dict(found)))
+        history.append(Instant(end, now.mesh, found))
     return history
 
 

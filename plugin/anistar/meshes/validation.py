@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import cast
 
 import numpy as np
 
+from ..metric.base.mesh import AnyMesh, as_mesh
 from .mesh import Mesh
 from .topology import (
     FacetTable,
@@ -29,15 +31,15 @@ from .violations import (
 
 
 def validate(
-    mesh: Mesh, reference: Mesh | None = None, *, tolerance: float = 1e-10
+    mesh: AnyMesh, reference: AnyMesh | None = None, *, tolerance: float = 1e-10
 ) -> list[Violation]:
     """Check every rule of a mesh; the empty list means that it is valid.
 
     Parameters
     ----------
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         The mesh to check.
-    reference : Mesh, optional
+    reference : Mesh or other mesh object, optional
         The mesh that it was made from: total measure, tags, names, corners and the measure
         carried by each tag must then agree.
     tolerance : float
@@ -49,6 +51,7 @@ def validate(
     -------
     list of Violation
     """
+    mesh = cast(Mesh, as_mesh(mesh))
     found = [*_length_violations(mesh), *cell_violations(mesh.points, mesh.cells)]
     if any(violation.kind in _BLOCKING for violation in found):
         return found
@@ -63,7 +66,7 @@ def validate(
         return found
     found += _completeness_violations(mesh, table)
     if reference is not None:
-        found += _reference_violations(mesh, reference, tolerance)
+        found += _reference_violations(mesh, cast(Mesh, as_mesh(reference)), tolerance)
     return found
 
 

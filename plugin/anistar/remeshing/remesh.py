@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..base.arguments import require
 from ..base.arrays import Floats, Ints
 from ..base.core_errors import meshing_errors
+from ..base.settings import chosen
 from ..base.telling import tell
 from ..judging.certificate import keep_certificate
+from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..meshes.mesh_arrays import mesh_arrays
 from ..metric import check_metric
+from ..objects import AnyMesh, as_mesh, made, metric_in, opened
 from .contact import check_curves, check_surfaces
 from .demand import check_demand
 from .fidelity import smooth_shape, surface_deviations, tag_measures
@@ -26,6 +29,8 @@ from .ramp import approached, carried
 from .report import RemeshReport, report_of
 from .size_range import check_sizes
 from .verdict import certificate_for
+
+METRIC = "metric"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,27 +49,33 @@ class Remeshed:
     metric: Floats
     report: RemeshReport
 
+    def to(self, like: AnyMesh) -> Any:
+        """Return the mesh with its metric in another form, see `anistar.objects.made`."""
+        return made(self.mesh, {METRIC: Field(self.metric)}, like)
+
 
 def remesh(
-    mesh: Mesh,
-    M: ArrayLike,
+    mesh: AnyMesh,
+    M: ArrayLike | str,
     options: RemeshOptions | None = None,
     *,
-    geometry: Mesh | None = None,
+    geometry: AnyMesh | None = None,
     project: Project | None = None,
-) -> Remeshed:
+    like: AnyMesh | None = None,
+    **settings: Any,
+) -> Remeshed | Any:
     """Return a mesh of the same domain whose edges have length one in the metric.
 
     Parameters
     ----------
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         Carries the metric: P1 interpolation of its logarithm.
-    M : (n, d, d) array
+    M : (n, d, d) array, or name of a field of the object
         Metric at the points of `mesh`, in 1 / length**2. It is taken as given: no bounds,
         no gradation, no scaling. Only where the mesh is too coarse to say what the metric is
         between its points, the refinement is limited, see `RemeshOptions`.
     options : RemeshOptions, optional
-    geometry : Mesh, optional
+    geometry : Mesh or other mesh object, optional
         The mesh whose facets are the shape of the domain, `mesh` by default. Loops give the
         first mesh, so that curved boundaries do not drift. In 3D the facets, ridges and corners
         are those of `mesh`, and the geometry gives the shape of the curved ones.
@@ -73,11 +84,16 @@ def remesh(
         the true geometry: by at most half of the extent of the domain, and so that a point
         that is projected again stays. In 3D ridges keep to the curve through the points of the
         geometry.
+    like : object or str, optional
+        Return the new mesh in the form of this object, or of this name.
+    **settings
+        Single options by name, in place of those of `options`: ``shape="polyhedron"``.
 
     Returns
     -------
     Remeshed
-        Its metric is interpolated by logarithms.
+        Its metric is interpolated by logarithms. With `like`, an object of that form with the
+        metric as a field, see `anistar.objects.made`.
 
     Raises
     ------
@@ -94,9 +110,16 @@ def remesh(
     .. [1] Loseille, Loehner, Cavity-based operators for mesh adaptation, 2013.
     .. [2] Bossen, Heckbert, A pliant method for anisotropic mesh generation, 1996.
     """
-    options = RemeshOptions() if options is None else options
-    require(RemeshOptions, options=options)
-    geometry = mesh if geometry is None else geometry
+    held = opened(mesh)
+    options = chosen(RemeshOptions, options, settings)
+    shape = (held.geometry or held.mesh) if geometry is None else as_mesh(geometry, "geometry")
+    done = _remeshed(held.mesh, metric_in(held, M), options, shape, project)
+    return done if like is None else done.to(like)
+
+
+def _remeshed(
+    mesh: Mesh, M: ArrayLike, options: RemeshOptions, geometry: Mesh, project: Project | None
+) -> Remeshed:
     _check_call(mesh, geometry, project, options)
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     scale = _unit_scale(mesh.points)
@@ -105,19 +128,19 @@ def remesh(
     check_sizes(mesh, metric, scale)
     ramp = approached(mesh, metric, scale, options.max_refinement)
     check_demand(mesh, ramp.metric, scale, options)
-    made = _made(mesh, ramp.metric, geometry, project, options, scale)
-    is_exact = _is_exact_at(made, scale)
-    reached = made.metric
+    result = _made(mesh, ramp.metric, geometry, project, options, scale)
+    is_exact = _is_exact_at(result, scale)
+    reached = result.metric
     reached *= scale * scale
-    new = _new_mesh(made.mesh, mesh, geometry, scale)
+    new = _new_mesh(result.mesh, mesh, geometry, scale)
     metric = carried(mesh, check_metric(M), new) if ramp.is_limited.any() else reached
-    certificate = certificate_for(made, new, reached, options)
+    certificate = certificate_for(result, new, reached, options)
     if certificate is not None and is_exact and metric is reached:
         keep_certificate(new, certificate)
-    is_curved = mesh.dim == 2 or made.counts["curved"] > 0
+    is_curved = mesh.dim == 2 or result.counts["curved"] > 0
     shape = smooth_shape(geometry, options) if is_curved else None
     report = report_of(
-        made,
+        result,
         new,
         reached,
         ramp=ramp,

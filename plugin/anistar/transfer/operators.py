@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
-from ..meshes.mesh import Mesh
+from ..objects import AnyMesh, as_mesh
 from .interpolation import Interpolator
 from .options import Outside, TransferOptions
 from .projection.coverage import require_covered
@@ -16,8 +16,8 @@ LOCATIONS = ("points", "cells", "cell_nodes")
 
 
 def transfer_operator(
-    source: Mesh,
-    target: Mesh,
+    source: AnyMesh,
+    target: AnyMesh,
     method: str = "interpolate",
     *,
     on: str = "points",
@@ -33,7 +33,7 @@ def transfer_operator(
 
     Parameters
     ----------
-    source, target : Mesh
+    source, target : Mesh or other mesh object
         Two meshes of the same dimension.
     method : {"interpolate", "conservative", "lumped"}
         As in `transfer`; "lumped" is the low-order part of the bounded method, which itself is
@@ -57,6 +57,7 @@ def transfer_operator(
     ValueError
         If the method is not linear or unknown, or a part of the target lies outside.
     """
+    source, target = as_mesh(source, "source"), as_mesh(target, "target")
     if source.dim != target.dim:
         raise ValueError(f"cannot transfer from a {source.dim}D mesh to a {target.dim}D mesh")
     if method == "bounded":

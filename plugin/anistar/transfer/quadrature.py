@@ -9,15 +9,16 @@ from .. import _core
 from ..base.arrays import AnyArray, Floats, Ints, Longs
 from ..meshes.mesh import Mesh
 from ..metric import check_metric, interpolated
+from ..objects import AnyMesh, as_mesh
 from .location import Places, located_coordinates
 from .options import Outside, TransferOptions
 from .regions import common_regions, warn_of_unmatched
 
 
 def transfer_quadrature(
-    source: Mesh,
+    source: AnyMesh,
     values: ArrayLike,
-    target: Mesh,
+    target: AnyMesh,
     *,
     rule: ArrayLike,
     target_rule: ArrayLike | None = None,
@@ -32,7 +33,7 @@ def transfer_quadrature(
 
     Parameters
     ----------
-    source, target : Mesh
+    source, target : Mesh or other mesh object
         Two meshes of the same dimension.
     values : (m, q, ...) array
         One state, of any shape and type, for each quadrature point of each source cell.
@@ -56,6 +57,7 @@ def transfer_quadrature(
     ValueError
         If shapes do not fit, the metric is not positive definite, or a point lies outside.
     """
+    source, target = as_mesh(source, "source"), as_mesh(target, "target")
     if source.dim != target.dim:
         raise ValueError(f"cannot transfer from a {source.dim}D mesh to a {target.dim}D mesh")
     if outside not in ("raise", "nearest"):

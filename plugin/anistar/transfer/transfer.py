@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 
-from ..base.arguments import require
 from ..base.arrays import Floats
+from ..base.settings import chosen
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
+from ..metric.base.given import AnyFields, given_fields
+from ..objects import AnyMesh, as_mesh, made, opened
 from .interpolation import Interpolator
-from .options import Outside, TransferOptions
+from .options import TransferOptions
 from .projection.bounded import bounded
 from .projection.coverage import require_covered
 from .projection.difference import l2_difference
@@ -46,14 +48,14 @@ class _Carried:
 
 
 def transfer(
-    source: Mesh,
-    fields: Mapping[str, Field | ArrayLike],
-    target: Mesh,
+    source: AnyMesh,
+    fields: AnyFields,
+    target: AnyMesh,
     options: TransferOptions | None = None,
     *,
-    method: str | None = None,
-    outside: Outside | None = None,
-) -> Transferred:
+    like: AnyMesh | None = None,
+    **settings: Any,
+) -> Transferred | Any:
     """Carry fields from the source mesh to the target mesh.
 
     ``interpolate`` evaluates fields at the target's points, centroids or nodes. ``conservative``
@@ -69,19 +71,23 @@ def transfer(
 
     Parameters
     ----------
-    source, target : Mesh
+    source, target : Mesh or other mesh object
         Two meshes of the same dimension.
-    fields : mapping of str to Field or array
-        Fields on the source mesh; a bare array means points.
+    fields : mapping of str to Field or array, array, name, sequence of names, or None
+        Fields on the source mesh; a bare array means points. Names are those of fields in the
+        source object, of which None means all.
     options : TransferOptions, optional
         All options at once.
-    method, outside : str, optional
-        The two options most used, given by name; they replace those of `options`.
+    like : object or str, optional
+        Return the target with the fields in the form of this object, or of this name.
+    **settings
+        Single options by name, in place of those of `options`: ``method="conservative"``.
 
     Returns
     -------
     Transferred
-        Fields in the form they were given (bare array or `Field`), and the report.
+        Fields in the form they were given (bare array or `Field`), and the report. With `like`,
+        an object of that form, see `anistar.objects.made`.
 
     Raises
     ------
@@ -89,10 +95,19 @@ def transfer(
         If a part of the target lies outside and ``outside="raise"``, if an option is unknown, if
         a field does not fit the source mesh, or if the method cannot carry it.
     """
+    held, onto = opened(source, "source"), as_mesh(target, "target")
+    options = chosen(TransferOptions, options, settings)
+    given = given_fields(held.fields, fields)
+    carried = _transferred(held.mesh, given.named(), onto, options)
+    return carried if like is None else made(onto, carried.fields, like)
+
+
+def _transferred(
+    source: Mesh, fields: Mapping[str, Field | ArrayLike], target: Mesh, options: TransferOptions
+) -> Transferred:
     started = time.perf_counter()
     if source.dim != target.dim:
         raise ValueError(f"cannot transfer from a {source.dim}D mesh to a {target.dim}D mesh")
-    options = _merged(options, method, outside)
     checked = as_fields(source, fields)
     regions = common_regions(source, target)
     warn_of_unmatched(regions)
@@ -130,18 +145,6 @@ def _as_given(fields: Mapping[str, Any], carried: Mapping[str, Field]) -> dict[s
         name: field if isinstance(fields[name], Field) else field.values
         for name, field in carried.items()
     }
-
-
-def _merged(
-    options: TransferOptions | None, method: str | None, outside: Outside | None
-) -> TransferOptions:
-    given = options if options is not None else TransferOptions()
-    require(TransferOptions, options=given)
-    return replace(
-        given,
-        method=given.method if method is None else method,
-        outside=given.outside if outside is None else outside,
-    )
 
 
 def _interpolated(

@@ -7,7 +7,7 @@ of them is the same as one from here.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +16,13 @@ from numpy.typing import ArrayLike
 from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
 from ...base.arrays import AnyArray
 from ...formats.content.assembly import assembled
 from ...formats.content.export import exported
-from ...formats.content.raw import RawMesh
+from ...formats.content.raw import KIND_DIM, RawMesh
 from ...formats.content.tag_arrays import NAMES, TAGS, decoded_names, take_tags
 from ...formats.parsing.reading import reading
 from ...formats.vtk.cells import blocks_of, types_and_rows
@@ -29,7 +30,12 @@ from ...meshes.fields import Field, as_fields
 from ...meshes.mesh import Mesh
 
 
-def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) -> Any:
+def to_vtk(
+    mesh: Mesh,
+    fields: Mapping[str, Field | ArrayLike] | None = None,
+    *,
+    dims: Collection[int] = range(4),
+) -> Any:
     """Return a mesh and its fields as a `vtkUnstructuredGrid`.
 
     Parameters
@@ -40,6 +46,8 @@ def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) ->
     fields : mapping of str to Field or array, optional
         Vectors get three components, tensors nine, row by row. Cell fields are NaN (labels 0)
         on the cells of lower dimension.
+    dims : collection of int
+        Dimensions of the cells that are written; all by default.
 
     Returns
     -------
@@ -52,7 +60,8 @@ def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) ->
     points = vtkPoints()
     points.SetData(numpy_to_vtk(content.points))
     grid.SetPoints(points)
-    types, ends, connectivity = types_and_rows(content.blocks)
+    blocks = [block for block in content.blocks if KIND_DIM[block.kind] in dims]
+    types, ends, connectivity = types_and_rows(blocks)
     cells = vtkCellArray()
     cells.SetData(
         numpy_to_vtkIdTypeArray(np.r_[0, ends], deep=True),
@@ -60,7 +69,6 @@ def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) ->
     )
     grid.SetCells(numpy_to_vtk(types, deep=True), cells)
     _add(grid.GetPointData(), content.point_data)
-    blocks = content.blocks
     cell_data = {name: np.concatenate([b.data[name] for b in blocks]) for name in blocks[0].data}
     tags = np.concatenate([np.asarray(b.tags, np.int32) for b in blocks])
     _add(grid.GetCellData(), {TAGS: tags, **cell_data})
@@ -71,13 +79,14 @@ def to_vtk(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None = None) ->
 
 
 def from_vtk(grid: Any) -> tuple[Mesh, dict[str, Field]]:
-    """Return the mesh and fields of a `vtkUnstructuredGrid` of triangles or tetrahedra.
+    """Return the mesh and fields of a `vtkUnstructuredGrid`, or of another data set, as one.
 
     Parameters
     ----------
-    grid : vtkUnstructuredGrid
-        Triangles need z = 0. Cells of lower dimension become facets, ridges and corners; their
-        tags are looked for in ``medit:ref``, ``gmsh:physical`` and ``cell_tags``.
+    grid : vtkUnstructuredGrid or other vtkDataSet
+        Of triangles or tetrahedra; triangles need z = 0. Cells of lower dimension become
+        facets, ridges and corners; their tags are looked for in ``medit:ref``,
+        ``gmsh:physical`` and ``cell_tags``.
 
     Returns
     -------
@@ -89,19 +98,34 @@ def from_vtk(grid: Any) -> tuple[Mesh, dict[str, Field]]:
     Raises
     ------
     TypeError
-        If it is no unstructured grid.
+        If it is no data set.
     FormatError
         If it holds no valid mesh.
     """
-    if not getattr(grid, "IsA", lambda name: False)("vtkUnstructuredGrid"):
+    if not isinstance(grid, vtkDataSet):
         kind = getattr(grid, "GetClassName", lambda: type(grid).__name__)()
         raise TypeError(f"a vtkUnstructuredGrid is needed, not {kind}")
-    name = Path("vtkUnstructuredGrid")
+    name = Path(grid.GetClassName())
     with reading(name):
-        raw = _content(grid)
+        raw = _content(as_grid(grid))
         take_tags(raw)
     mesh, fields, _ = assembled(raw, name)
     return mesh, fields
+
+
+def as_grid(data: Any) -> Any:
+    """Return a data set of any class as a `vtkUnstructuredGrid`."""
+    if data.IsA("vtkUnstructuredGrid"):
+        return data
+    append = vtkAppendFilter()
+    append.SetInputData(data)
+    append.Update()
+    return append.GetOutput()
+
+
+def cell_types(grid: Any) -> AnyArray:
+    """Return VTK's number of the type of each cell of a grid."""
+    return np.asarray(WrapDataObject(grid).CellTypes)
 
 
 def _content(grid: Any) -> RawMesh:
@@ -111,7 +135,7 @@ def _content(grid: Any) -> RawMesh:
     raw.point_data = _arrays(grid.GetPointData())
     if grid.GetNumberOfCells():
         raw.blocks = blocks_of(
-            np.asarray(WrapDataObject(grid).CellTypes),
+            cell_types(grid),
             vtk_to_numpy(grid.GetCells().GetOffsetsArray())[1:],
             vtk_to_numpy(grid.GetCells().GetConnectivityArray()),
             _arrays(grid.GetCellData()),

@@ -1,0 +1,62 @@
+"""Adapters that are imported as soon as their package is, without importing it."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import sys
+from collections.abc import Callable
+from functools import partial
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
+
+#: What has to be there when the package is, not first when an object of it is met.
+_ADAPTERS = {"pyvista": "anistar.adapters.vtk.accessor"}
+
+
+def follow_imports() -> None:
+    """Import the adapters of packages right after these, now where they are imported already."""
+    for package, adapter in _ADAPTERS.items():
+        after_import(package, partial(importlib.import_module, adapter))
+
+
+def after_import(package: str, act: Callable[[], object]) -> None:
+    """Call `act` once `package` is imported, now if it is already."""
+    if package in sys.modules:
+        act()
+    else:
+        sys.meta_path.insert(0, _Watch(package, act))
+
+
+class _Watch(MetaPathFinder):
+    """A finder that leaves the search to the others, and has their loader followed by a call."""
+
+    def __init__(self, package: str, act: Callable[[], object]) -> None:
+        self._package, self._act = package, act
+
+    def find_spec(self, fullname: str, path: Any, target: Any = None) -> ModuleSpec | None:
+        if fullname != self._package or self not in sys.meta_path:
+            return None
+        sys.meta_path.remove(self)
+        spec = importlib.util.find_spec(fullname)
+        if spec is not None and spec.loader is not None:
+            spec.loader = _Followed(spec.loader, self._act)
+        return spec
+
+
+class _Followed(Loader):
+    """A loader with a call after it."""
+
+    def __init__(self, loader: Loader, act: Callable[[], object]) -> None:
+        self._loader, self._act = loader, act
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        return self._loader.create_module(spec)
+
+    def exec_module(self, module: ModuleType) -> None:
+        if module.__spec__ is not None:
+            module.__spec__.loader = self._loader
+        self._loader.exec_module(module)
+        self._act()
