@@ -53,7 +53,8 @@ METRIC_ROOMS = [
     {"kernels"},
     {"tensors"},
     {"laws", "recovery"},
-    {"pipeline", "sources"},
+    {"sources"},
+    {"pipeline"},
 ]
 
 # So many modules can be looked over at once.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from .mesh import Background, values_of
@@ -69,6 +70,16 @@ def given_values(held: Background, u: Any) -> Any:
     if isinstance(u, str):
         return given_fields(held.fields, u).fields[u]
     return values_of(u)
+
+
+def refuse_masked(values: Any) -> None:
+    """Raise ValueError if some of the values are masked: nobody knows what they are."""
+    if np.ma.is_masked(values):
+        rows = np.ma.getmaskarray(values).reshape(len(values), -1).any(axis=1)
+        raise ValueError(
+            f"{rows.sum()} values are masked, the first is value {np.argmax(rows)}: give what is "
+            "to stand there, such as values.filled(0.0)"
+        )
 
 
 def _names(given: Any) -> tuple[str, ...] | None:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
 import numpy as np
 
 from .arrays import Floats, Ints
+from .names import Names
 from .vectors import norms
 
 
@@ -95,6 +96,11 @@ def as_mesh(mesh: AnyMesh) -> MeshLike:
 def values_of(function: Any) -> Any:
     """Return arrays as they are, and what another package's function is at the points."""
     return _reader.values_of(function)
+
+
+def names_of(mesh: MeshLike) -> Names:
+    """Return what the tags of a mesh are called; nothing where it has no names."""
+    return getattr(mesh, "names", {})
 
 
 def cell_volumes(mesh: MeshLike) -> Floats:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats, Ints
+from ..base.by_name import require_numbers
 from ..base.mesh import AnyMesh, MeshLike, as_mesh, cell_volumes, diameter, point_volumes
 from ..kernels.algebra import eigh
 from ..kernels.elementary import exp, log, power
@@ -176,13 +177,15 @@ def check_time_steps(time_steps: ArrayLike | None, k: int) -> Floats:
 
 
 def check_target(name: str, value: float | None) -> None:
-    """Raise ValueError if a target is not a positive number."""
+    """Raise if a target is not a positive number."""
+    require_numbers(**{name: value})
     if value is None or not (np.isfinite(value) and value > 0.0):
         raise ValueError(f"{name} must be positive, got {value}")
 
 
 def check_p(p: float) -> None:
-    """Raise ValueError if no norm Lp has this p."""
+    """Raise if no norm Lp has this p."""
+    require_numbers(p=p)
     if not p >= 1.0:
         raise ValueError(f"p must be at least 1, got {p}")
 

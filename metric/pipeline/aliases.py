@@ -12,7 +12,7 @@ PETSC_PREFIX = "dm_plex_metric"
 MMG_ALIASES = {"hmin": "h_min", "hmax": "h_max", "hgrad": "gradation_factor"}
 
 #: Another word of ours for an option.
-SYNONYMS = {"recovery": "method"}
+SYNONYMS = {"recovery": "method", "frozen": "frozen_tags"}
 _IS_OFF = (False, -1)
 
 #: Options of PETSc and Mmg that we have no counterpart for: values by which they ask for nothing

@@ -15,6 +15,7 @@ from ..kernels.growth import Growth
 from ..laws.bounds import check_bounds, clipped
 from ..laws.complexity import integral_of_exponential
 from ..laws.gradation import TOLERANCE, GrowthLaw, grade_on
+from ..sources.size_at import sizes_at
 from ..tensors.checks import check_result
 from .ledger import Stage
 from .options import MetricOptions
@@ -71,6 +72,10 @@ def finishing_on(mesh: MeshLike, options: MetricOptions) -> Finishing:
         n, h_min=options.h_min, h_max=h_max, a_max=options.a_max, points=mesh.points
     )
     assert high is not None  # h_max always has a value
+    if options.size_at:
+        named = sizes_at(mesh, options.size_at, options.gradation_for(d))
+        high = np.minimum(high, named[:, None])
+        _check_order(low, high)
     return Finishing(
         mesh=mesh,
         graph=wide_graph(mesh),
@@ -80,3 +85,14 @@ def finishing_on(mesh: MeshLike, options: MetricOptions) -> Finishing:
         a_max=ratio,
         law=options.growth_law(d),
     )
+
+
+def _check_order(low: Floats | None, high: Floats) -> None:
+    if low is None:
+        return
+    bad = np.flatnonzero(np.broadcast_to(low > high, high.shape).any(axis=1))
+    if bad.size:
+        size, smallest = high[bad[0]].min(), np.broadcast_to(low, high.shape)[bad[0]].max()
+        raise ValueError(
+            f"size_at asks for {size:g} at point {bad[0]}, which is less than h_min = {smallest:g}"
+        )

@@ -63,6 +63,11 @@ class Ledger:
     estimate: Estimate
     predicted_error: dict[str, float]
 
+    @property
+    def is_featureless(self) -> bool:
+        """Whether no field has a second derivative anywhere, so that the metric is uniform."""
+        return not any(self.predicted_error.values())
+
     def as_dict(self) -> dict[str, Any]:
         """Return the ledger in JSON builtins."""
         values = asdict(self)

@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
+from ..base.by_name import by_name, require_numbers
 from ..laws.bounds import check_bounds
 from ..laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY
 from ..laws.gradation import DEFAULT_FACTORS, GrowthLaw
 from ..laws.normalisation import check_p, check_target
 from ..recovery import RecoveryOptions
+from ..sources.size_at import SizeAt
 from ..tensors.combination import check_rule, check_step
 from .aliases import advice, asks_nothing, flattened, our_name, our_value
 from .scaling import Scale, check_scale
@@ -23,6 +25,7 @@ Bound = float | Floats | Callable[[Floats], ArrayLike] | None
 TARGETS = ("target_complexity", "target_elements", "target_error")
 
 
+@by_name
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MetricOptions:
     """Options of `from_fields`. None means off.
@@ -50,6 +53,9 @@ class MetricOptions:
     h_min, h_max : float, ndarray (n,) or callable, optional
         Bounds of the sizes, lengths; a callable takes the points (n, d). Without `h_max`,
         sizes stay below the diagonal of the bounding box.
+    size_at : mapping of str or int to float, optional
+        Largest sizes at facets, by their name or tag, from which sizes grow by the gradation
+        factor; or in regions of cells, by their name: ``{"hole": 0.02}``.
     a_max : float, ndarray (n,) or callable, optional
         Largest ratio of sizes at a point.
     restrict_anisotropy_first : bool
@@ -79,6 +85,7 @@ class MetricOptions:
     intersection_rule: str = "pairwise"
     h_min: Bound = None
     h_max: Bound = None
+    size_at: SizeAt | None = None
     a_max: Bound = None
     restrict_anisotropy_first: bool = False
     max_coarsening: float | None = None
@@ -116,6 +123,9 @@ class MetricOptions:
         }
         n = max(np.asarray(bound).size for bound in bounds.values())
         check_bounds(n, **bounds)
+        if self.size_at is not None and not isinstance(self.size_at, Mapping):
+            raise TypeError(f"size_at must be like {{'wall': 0.02}}, got {self.size_at!r}")
+        require_numbers(max_coarsening=self.max_coarsening, max_distortion=self.max_distortion)
         factor = self.gradation_factor
         if isinstance(factor, str) and factor != "auto":
             raise ValueError(f"gradation_factor must be a number, None or 'auto', got {factor!r}")

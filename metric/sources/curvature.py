@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..base.arrays import Floats, Ints
-from ..base.mesh import AnyMesh, MeshLike, as_mesh, diameter
+from ..base.mesh import AnyMesh, MeshLike, as_mesh, diameter, names_of
+from ..base.names import Tag, tags_called
 from ..kernels.intersection import intersect
 from ..kernels.spectra import product
 from ..tensors.checks import check_result
@@ -21,7 +22,7 @@ def curvature_metric(
     points_per_circle: float | None = None,
     chord_error: float | None = None,
     hausdorff_number: float | None = None,
-    tags: int | Sequence[int] | None = None,
+    tags: Tag | Sequence[Tag] | None = None,
     h_min: float | None = None,
     h_max: float | None = None,
     ridge_angle: float = 45.0,
@@ -45,8 +46,8 @@ def curvature_metric(
     hausdorff_number : float, optional
         The same relative to the length of the chord, in (0, 1/2]: `remesh` has this bound. Give
         one of the three.
-    tags : int or sequence of int, optional
-        Facet tags that count; all if None.
+    tags : int, str, or sequence of these, optional
+        Facet tags that count, or their names; all if None.
     h_min, h_max : float, optional
         Bounds of the sizes; `h_max` is the diagonal of the bounding box if None.
     ridge_angle : float
@@ -124,15 +125,12 @@ def _radius(curvature: Floats) -> Floats:
     return 1.0 / np.maximum(curvature, 1e-100)
 
 
-def _selected(mesh: MeshLike, tags: int | Sequence[int] | None) -> tuple[Ints, Ints]:
+def _selected(mesh: MeshLike, tags: Tag | Sequence[Tag] | None) -> tuple[Ints, Ints]:
     """Facets and their tags, of all or of the given tags."""
     if tags is None:
         return mesh.facets, mesh.facet_tags
-    unknown = np.setdiff1d(tags, mesh.facet_tags)
-    if unknown.size:
-        known = ", ".join(str(tag) for tag in np.unique(mesh.facet_tags))
-        raise ValueError(f"no facet has tag {unknown[0]}; the tags are {known}")
-    chosen = np.isin(mesh.facet_tags, tags)
+    wanted = tags_called(tags, names_of(mesh), mesh.points.shape[1] - 1, mesh.facet_tags)
+    chosen = np.isin(mesh.facet_tags, wanted)
     return mesh.facets[chosen], mesh.facet_tags[chosen]
 
 

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.mesh import AnyMesh, MeshLike, as_mesh, diameter
+from ..base.mesh import AnyMesh, MeshLike, as_mesh, diameter, names_of
+from ..base.names import Tag, tags_called
 from ..base.vectors import norms
 from ..kernels.elementary import log
 from ..laws.gradation import GrowthLaw
@@ -92,7 +93,7 @@ def size_in_box(
 
 def size_near_boundary(
     mesh: AnyMesh,
-    tags: int | Sequence[int],
+    tags: Tag | Sequence[Tag],
     h: float,
     *,
     growth: float | None = 1.5,
@@ -100,15 +101,11 @@ def size_near_boundary(
 ) -> Floats:
     """Sizes that are `h` on the facets with the given tags and grow with the distance to them.
 
-    The other parameters, the result and the errors are those of `size_near_points`; a tag that no
-    facet has is a ValueError too.
+    Tags may be given by name. The other parameters, the result and the errors are those of
+    `size_near_points`; a tag or name that no facet has is a ValueError too.
     """
     mesh = as_mesh(mesh)
-    wanted = np.atleast_1d(np.asarray(tags))
-    unknown = np.setdiff1d(wanted, mesh.facet_tags)
-    if unknown.size:
-        known = ", ".join(str(tag) for tag in np.unique(mesh.facet_tags))
-        raise ValueError(f"no facet has tag {unknown[0]}; the tags are {known}")
+    wanted = tags_called(tags, names_of(mesh), mesh.points.shape[1] - 1, mesh.facet_tags)
     size = _check_sizes(h, 1)[0]
     facets = mesh.facets[np.isin(mesh.facet_tags, wanted)]
     away = distance_to_facets(mesh.points, mesh.points[facets])

@@ -49,9 +49,13 @@ CASES = {
     "unknown option": ("adapt in.vtu -o o.vtu --colour red", "unrecognized arguments: --colour"),
     "not a number": ("adapt in.vtu -o o.vtu --h-min tiny", "argument --h-min"),
     "not off": ("adapt in.vtu -o o.vtu --a-max some", "argument --a-max: invalid number or 'off'"),
-    "not a list": (
-        "adapt in.vtu -o o.vtu --frozen-tags 1,x",
-        "argument --frozen-tags: '1,x' is no list of integers like 1,2,3",
+    "no such name": (
+        "adapt in.vtu -o o.vtu --target-complexity 9 --frozen-tags 1,x",
+        "frozen_tags: no facet is called 'x'",
+    ),
+    "not sizes": (
+        "adapt in.vtu -o o.vtu --size-at wall:3",
+        "argument --size-at: 'wall:3' is no list of sizes by name like wall=0.1,hole=0.02",
     ),
     "metric over the fields": (
         "adapt in.vtu --target-complexity 9 -o o.mesh --metric-output o.sol",

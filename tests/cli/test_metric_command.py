@@ -119,7 +119,7 @@ def test_a_given_metric_is_repaired_only_when_asked(mesh, capsys, caplog):
     [
         ("--size-near 0.5,0.1", "--size-near needs"),
         ("--size-in-box 0,1,0.1", "--size-in-box needs"),
-        ("--size-at-tag 1", "--size-at-tag needs 2 numbers, got 1"),
+        ("--size-at-tag 1", "'1' has no size: give TAG,H or NAME,H"),
         ("--size-at-tag 77,0.1", "no facet has tag 77"),
         ("--field u --implied", "--field u needs a target, such as --target-complexity"),
         ("--implied --max-elements 5", "max_elements is 5"),

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...base.arrays import Floats, Ints
+from ...base.given import refuse_masked
 from ...base.mesh import AnyMesh, MeshLike, as_mesh, values_of
 from ...kernels.graph import mesh_edges
 from ...tensors.checks import check_values
@@ -67,6 +68,7 @@ def read_samples(mesh: MeshLike, u: Any, *, space: str | None, name: str = "u") 
     if space is not None and space not in SPACES:
         raise ValueError(f"space must be one of {', '.join(SPACES)}, got {space!r}")
     given: ArrayLike = getattr(u, "values", u)
+    refuse_masked(given)
     length, n = np.shape(given)[:1], len(mesh.points)
     edges = None
     if space == "P0" or (space is None and place == "cells"):

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from ..base.option_names import MMG
 from ..loops.adapt import AdaptOptions
+from ..metric.base.names import Tag
 from ..metric.pipeline.aliases import PETSC_PREFIX, asks_nothing, our_name, our_value
 from ..transfer import METHODS, OUTSIDE
 
@@ -29,8 +30,30 @@ def numbers(text: str) -> tuple[float, ...]:
     return _listed(text, float, "numbers")
 
 
-def _integers(text: str) -> tuple[int, ...]:
-    return _listed(text, int, "integers")
+def tag(text: str) -> Tag:
+    """Parse a tag, or the name of tags."""
+    try:
+        return int(text)
+    except ValueError:
+        return text
+
+
+def _tags(text: str) -> tuple[Tag, ...]:
+    return tuple(tag(part.strip()) for part in text.split(",") if part.strip())
+
+
+def _size_at(text: str) -> dict[Tag, float]:
+    """Parse sizes by tags or names: ``wall=0.1,hole small=0.02``."""
+    sizes: dict[Tag, float] = {}
+    for part in text.split(","):
+        name, _, size = part.rpartition("=")
+        try:
+            sizes[tag(name.strip())] = float(size)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(
+                f"{text!r} is no list of sizes by name like wall=0.1,hole=0.02"
+            ) from error
+    return sizes
 
 
 def _listed(text: str, kind: Callable[[str], Number], what: str) -> tuple[Number, ...]:
@@ -77,6 +100,10 @@ _METRIC: dict[str, tuple[Any, str]] = {
     "p": (float, "norm Lp in which the interpolation error is smallest (default 2)"),
     "h_min": (float, "smallest size, in mesh units (Mmg: -hmin)"),
     "h_max": (float, "largest size, in mesh units (Mmg: -hmax)"),
+    "size_at": (
+        _size_at,
+        "largest sizes at facets or regions, by name or tag: wall=0.1,hole=0.02",
+    ),
     "a_max": (_number_or_off("a_max"), "largest anisotropy, or off"),
     "restrict_anisotropy_first": (
         _switch,
@@ -142,7 +169,10 @@ _REMESH: dict[str, tuple[Any, str]] = {
         "factor by which sizes shrink against those of the mesh at most, or off, or auto "
         "(default): only where the mesh cannot resolve the metric",
     ),
-    "frozen_tags": (_integers, "facet tags that are kept as they are, comma-separated"),
+    "frozen_tags": (
+        _tags,
+        "tags or names of facets that are kept as they are, comma-separated; also --frozen",
+    ),
     "agreement": (
         _agreement,
         "change the mesh until the stars agree: on, off, or auto (default): where the metric "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
@@ -14,11 +14,12 @@ from ..base.arrays import Floats
 from ..base.errors import MeshingError
 from ..base.option_names import canonical
 from ..base.report import attributes
-from ..base.telling import telling_once
+from ..base.telling import tell, telling_once
 from ..judging.certificate import certify_and_keep, share_of
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric import Ledger, MetricOptions, from_fields
+from ..metric.base.by_name import by_name
 from ..metric.base.given import AnyFields, given_fields
 from ..objects import AnyMesh, as_mesh, made, opened
 from ..remeshing.demand import check_targets
@@ -45,6 +46,7 @@ def _transfer_to_a_remesh() -> TransferOptions:
     return TransferOptions(outside="nearest")
 
 
+@by_name
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdaptOptions:
     """The options of every stage of an adaptation.
@@ -296,6 +298,8 @@ def adapt_to(
         check_targets(mesh, options.metric, [target], options.remesh)
     chosen = {name: checked[name] for name in names}
     ledger, done, corrections = _to_count(mesh, chosen, options, wanted, geometry, project)
+    if ledger.is_featureless:
+        tell([f"no second derivative in {', '.join(names)}: the mesh is uniform"])
     carried = transfer(mesh, fields, done.mesh, options.transfer)
     stars = _judged(done, options.remesh)
     report = AdaptReport(
@@ -419,7 +423,7 @@ def metric_field_names(
             field = fields[name]
             raise ValueError(
                 f"field {name!r} is a {field.kind} on {field.on}: a metric needs a scalar or a "
-                "vector on points or cells"
+                f"vector on points or cells{_about_labels([field])}"
             )
     at_points = tuple(name for name in usable if fields[name].on == "points")
     names = tuple(wanted) if wanted is not None else at_points
@@ -427,8 +431,14 @@ def metric_field_names(
         raise ValueError(
             "no scalar or vector field at the points to make a metric of; the fields are: "
             f"{_listed(fields)}; those on cells take part when metric_fields names them"
+            f"{_about_labels(fields.values())}"
         )
     return names
+
+
+def _about_labels(fields: Iterable[Field]) -> str:
+    is_one = any(field.kind == "label" for field in fields)
+    return "; whole numbers are labels, give them as floats if they are values" * is_one
 
 
 def _listed(fields: Mapping[str, Field]) -> str:

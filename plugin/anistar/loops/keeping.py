@@ -11,6 +11,7 @@ from ..base.arguments import require
 from ..judging.quality import UNIT, metric_lengths
 from ..meshes.topology import unique_edges
 from ..metric import ELEMENTS_PER_COMPLEXITY, check_metric, complexity, implied_metric
+from ..metric.base.by_name import by_name
 from ..metric.laws.complexity import REAL_ELEMENTS_PER_COMPLEXITY
 from ..objects import AnyMesh, metric_on
 
@@ -20,6 +21,7 @@ _COMPLEXITY_OF_REAL_MESHES = {
 }
 
 
+@by_name
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeepOptions:
     """How far a mesh may be from a metric and still be kept.

@@ -10,6 +10,7 @@ from typing import Any
 
 from ..base.arguments import require
 from ..meshes.mesh import Mesh
+from ..metric.base.by_name import by_name, require_numbers
 from .adapt import AdaptOptions
 from .adapt_settings import with_adapt_settings
 from .keeping import KeepOptions
@@ -23,6 +24,7 @@ START = 1000.0
 GROWTH = 2
 
 
+@by_name
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoopOptions:
     """When to adapt, to what, and when to stop.
@@ -86,6 +88,9 @@ class LoopOptions:
                 if not (value > 0 and math.isfinite(value)):
                     raise ValueError(f"complexities[{index}] must be above 0, not {value}")
             object.__setattr__(self, "complexities", values)
+        require_numbers(
+            target_error=self.target_error, rtol=self.rtol, max_iterations=self.max_iterations
+        )
         for name in ("target_error", "rtol"):
             value = getattr(self, name)
             if value is not None and not value > 0:

@@ -6,9 +6,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from ..metric.base.by_name import by_name
 from .adapt import AdaptOptions
 
 
+@by_name
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settled:
     """How little two steps at the same complexity differ when a loop goes on to the next.

@@ -19,6 +19,7 @@ from ..base.telling import telling_once
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric import from_fields
+from ..metric.base.by_name import by_name, require_numbers
 from ..metric.pipeline.scaling import Scale, scale_of
 from ..objects import AnyMesh, as_mesh, made, opened, values_of
 from ..remeshing.demand import check_targets
@@ -41,6 +42,7 @@ Initial = Mapping[str, Field | ArrayLike] | Callable[[Mesh], Mapping[str, Field 
 _BOUNDED = TransferOptions(method="bounded", outside="nearest")
 
 
+@by_name
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UnsteadyOptions:
     """How a problem in time is adapted.
@@ -77,6 +79,7 @@ class UnsteadyOptions:
         require(AdaptOptions, adapt=self.adapt)
         if self.adapt.transfer == AdaptOptions().transfer:
             object.__setattr__(self, "adapt", replace(self.adapt, transfer=_BOUNDED))
+        require_numbers(window=self.window, passes=self.passes)
         for name in ("window", "passes"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")

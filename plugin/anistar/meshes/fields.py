@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import AnyArray
+from ..metric.base.given import refuse_masked
 
 if TYPE_CHECKING:
     from .mesh import Mesh
@@ -49,6 +50,7 @@ class Field:
     kind: Kind | None = None
 
     def __post_init__(self) -> None:
+        refuse_masked(self.values)
         values = np.asarray(self.values)
         if values.dtype.kind not in "biuf":
             raise TypeError(f"field values must be real numbers, not {values.dtype}")
@@ -111,7 +113,7 @@ def as_fields(mesh: Mesh, fields: Mapping[str, Field | ArrayLike] | None) -> dic
         if not isinstance(name, str):
             raise TypeError(f"field names must be strings, not {name!r}")
         try:
-            field = given if isinstance(given, Field) else Field(np.asarray(given))
+            field = given if isinstance(given, Field) else Field(given)  # type: ignore[arg-type]
         except (TypeError, ValueError) as error:
             raise type(error)(f"field {name!r}: {error}") from error
         _check_shape(name, field, mesh)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field, fields
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.arrays import AnyArray, Floats, Ints
+from ..base.arrays import AnyArray, Bools, Floats, Ints
+from ..metric.base.names import Tag, tags_called
 from .topology import FacetTable, facet_table
 from .violations import (
     Violation,
@@ -33,7 +34,7 @@ _UNSUPPORTED = {
 }
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """A conforming simplicial mesh of a 2D or 3D domain, with tags and names.
 
@@ -74,6 +75,7 @@ class Mesh:
 
     points: Floats
     cells: Ints
+    _: KW_ONLY
     cell_tags: Ints = _NOT_GIVEN
     facets: Ints = _NOT_GIVEN
     facet_tags: Ints = _NOT_GIVEN
@@ -143,6 +145,38 @@ class Mesh:
     def n_facets(self) -> int:
         """Number of boundary and internal facets that are stored."""
         return len(self.facets)
+
+    def facets_of(self, called: Tag | Sequence[Tag]) -> Ints:
+        """Return the facets (k, d), rows of points, that have a name or a tag.
+
+        Parameters
+        ----------
+        called : str, int, or sequence of these
+            ``mesh.facets_of("wall")``; ``np.unique`` of it are the points there.
+
+        Raises
+        ------
+        ValueError
+            If no facet is called so; the nearest name is suggested.
+        """
+        tags = tags_called(called, self.names, self.dim - 1, self.facet_tags)
+        return np.asarray(self.facets[np.isin(self.facet_tags, tags)])
+
+    def region(self, called: Tag | Sequence[Tag]) -> Bools:
+        """Return which cells (m,) are of the regions that have a name or a tag.
+
+        Parameters
+        ----------
+        called : str, int, or sequence of these
+            ``np.where(mesh.region("steel"), 50.0, 1.0)`` is a conductivity for each cell.
+
+        Raises
+        ------
+        ValueError
+            If no cell is called so; the nearest name is suggested.
+        """
+        tags = tags_called(called, self.names, self.dim, self.cell_tags, kind="cell")
+        return np.isin(self.cell_tags, tags)
 
     def arrays(self) -> dict[str, Any]:
         """Return the arrays and names by field name, as the constructor takes them."""

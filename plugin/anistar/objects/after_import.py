@@ -24,7 +24,7 @@ def follow_imports() -> None:
 
 def after_import(package: str, act: Callable[[], object]) -> None:
     """Call `act` once `package` is imported, now if it is already."""
-    if package in sys.modules:
+    if sys.modules.get(package) is not None:
         act()
     else:
         sys.meta_path.insert(0, _Watch(package, act))

@@ -8,8 +8,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from .. import _core
+from ..metric.base.by_name import by_name
 
 
+@by_name
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConsistencyOptions:
     """Parameters of Algorithms 2 to 5, named as in Boissonnat, Wormser, Yvinec, RR-7712 v2.

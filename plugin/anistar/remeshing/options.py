@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from .. import _core
 from ..judging.skin import Shape, Skin
+from ..meshes.mesh import Mesh
+from ..metric.base.by_name import by_name, require_numbers
+from ..metric.base.names import Tag, tags_called
 from ..metric.laws.refinement import check_refinement
 from .consistency_options import ConsistencyOptions
 
@@ -34,6 +37,7 @@ CONSISTENCY_MODES: dict[bool | str, _core.ConsistencyMode] = {
 }
 
 
+@by_name
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RemeshOptions:
     """How to remesh; the metric itself is taken as it is given.
@@ -61,8 +65,8 @@ class RemeshOptions:
         metric between the points is a guess. Then ``report.converged`` is False, and the metric
         is to be evaluated on the new mesh and remeshed again: some passes later the limit acts no
         more. None takes every metric as it is.
-    frozen_tags : sequence of int
-        Facets with these tags are kept as they are.
+    frozen_tags : sequence of int or str
+        Facets with these tags, or these names, are kept as they are.
     shape : "smooth" or "polyhedron"
         What the facets of the geometry mean. "smooth": samples of smooth curves and surfaces,
         on which new points are placed. "polyhedron": they are the domain. Every point (in 3D:
@@ -107,7 +111,7 @@ class RemeshOptions:
     max_seconds: float | None = None
     max_memory: float | None = None
     max_refinement: float | Literal["auto"] | None = "auto"
-    frozen_tags: Sequence[int] = ()
+    frozen_tags: Sequence[Tag] = ()
     shape: Shape = "smooth"
     ridge_angle: float = 45.0
     hausdorff_number: float | None = None
@@ -119,6 +123,11 @@ class RemeshOptions:
     callback: Callback | None = None
 
     def __post_init__(self) -> None:
+        require_numbers(
+            max_seconds=self.max_seconds,
+            ridge_angle=self.ridge_angle,
+            hausdorff_number=self.hausdorff_number,
+        )
         for name in ("max_vertices", "seed", "threads"):
             value = getattr(self, name)
             if value is not None and not isinstance(value, int | np.integer):
@@ -133,6 +142,8 @@ class RemeshOptions:
             raise ValueError(f"max_memory must be positive, got {self.max_memory}")
         if self.max_refinement is not None:
             check_refinement("max_refinement", self.max_refinement)
+        if isinstance(self.frozen_tags, str | int):
+            object.__setattr__(self, "frozen_tags", (self.frozen_tags,))
         self.skin()  # checks it
         if self.hausdorff_number is not None and not 0 < self.hausdorff_number <= 1:
             raise ValueError(f"hausdorff_number must be in (0, 1], got {self.hausdorff_number}")
@@ -146,6 +157,20 @@ class RemeshOptions:
             raise ValueError(f"seed must be in [0, 2**64), got {self.seed}")
         if not 1 <= self.threads <= 256:
             raise ValueError(f"threads must be in [1, 256], got {self.threads}")
+
+    def on(self, mesh: Mesh) -> RemeshOptions:
+        """Return the options with the tags on a mesh in place of their names.
+
+        Raises
+        ------
+        ValueError
+            If no facet has such a tag or name.
+        """
+        try:
+            tags = tags_called(self.frozen_tags, mesh.names, mesh.dim - 1, mesh.facet_tags)
+        except ValueError as error:
+            raise ValueError(f"frozen_tags: {error}") from error
+        return replace(self, frozen_tags=tags) if tags else self
 
     def skin(self) -> Skin:
         """Return what facets are taken for."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -121,6 +120,7 @@ def _remeshed(
     mesh: Mesh, M: ArrayLike, options: RemeshOptions, geometry: Mesh, project: Project | None
 ) -> Remeshed:
     _check_call(mesh, geometry, project, options)
+    options = options.on(geometry)
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
     scale = _unit_scale(mesh.points)
     with np.errstate(over="ignore", under="ignore"):
@@ -170,7 +170,6 @@ def _check_call(
         raise ValueError(
             'until_consistent="pure" makes all surfaces anew in 3D: leave frozen_tags out'
         )
-    _check_frozen(options.frozen_tags, geometry)
 
 
 def _new_mesh(made: _core.MeshArrays, mesh: Mesh, geometry: Mesh, scale: float) -> Mesh:
@@ -241,12 +240,6 @@ def _keeps_digits(values: Floats, power_of_two: float) -> bool:
         products = np.abs(values[values != 0.0]) * power_of_two
     doubles = np.finfo(np.float64)
     return bool(((products >= doubles.tiny) & (products <= doubles.max)).all())
-
-
-def _check_frozen(frozen: Sequence[int], geometry: Mesh) -> None:
-    unknown = sorted(set(frozen) - set(geometry.facet_tags.tolist()))
-    if unknown:
-        raise ValueError(f"frozen_tags: no facet of the geometry has tag {unknown[0]}")
 
 
 def _same_points(wanted: Floats, points: Floats) -> Ints:

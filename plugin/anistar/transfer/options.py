@@ -6,6 +6,8 @@ import operator
 from dataclasses import dataclass
 from typing import Literal
 
+from ..metric.base.by_name import by_name
+
 Outside = Literal["raise", "nearest", "nan"]
 
 METHODS = ("interpolate", "conservative", "bounded")
@@ -13,6 +15,7 @@ OUTSIDE = ("raise", "nearest", "nan")
 MAX_THREADS = 256
 
 
+@by_name
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransferOptions:
     """How fields are carried over.

@@ -17,8 +17,9 @@ from ...metric import (
     size_near_boundary,
     size_near_points,
 )
+from ...metric.base.names import Tag
 from ...metric.tensors.checks import REPAIRS
-from ..options import numbers
+from ..options import numbers, tag
 
 
 def add_source_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,9 +44,27 @@ def add_source_arguments(parser: argparse.ArgumentParser) -> None:
     for flag, form, text in (
         ("--size-near", "X,Y[,Z],H", "size H at a point, growing from there"),
         ("--size-in-box", "LOW,HIGH,H", "size H in a box given by the coordinates of two corners"),
-        ("--size-at-tag", "TAG,H", "size H at the facets with a tag, growing from there"),
     ):
         group.add_argument(flag, action="append", default=[], type=numbers, metavar=form, help=text)
+    group.add_argument(
+        "--size-at-tag",
+        action="append",
+        default=[],
+        type=_tag_and_size,
+        metavar="TAG,H",
+        help="size H at the facets with a tag or a name, growing from there",
+    )
+
+
+def _tag_and_size(text: str) -> tuple[Tag, float]:
+    name, comma, size = text.rpartition(",")
+    try:
+        found = float(size)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"{text!r} is no tag or name with a size") from error
+    if not comma:
+        raise argparse.ArgumentTypeError(f"{text!r} has no size: give TAG,H or NAME,H")
+    return tag(name.strip()), found
 
 
 def has_sources(arguments: argparse.Namespace) -> bool:
@@ -89,9 +108,8 @@ def sources(mesh: Mesh, arguments: argparse.Namespace) -> dict[str, Floats]:
         found[f"in box {box[:-1]}"] = from_sizes(
             size_in_box(mesh, box[:d], box[d : 2 * d], box[2 * d]), d
         )
-    for at in arguments.size_at_tag:
-        _count("--size-at-tag", at, 2)
-        found[f"at tag {at[0]:g}"] = from_sizes(size_near_boundary(mesh, int(at[0]), at[1]), d)
+    for called, size in arguments.size_at_tag:
+        found[f"at {called}"] = from_sizes(size_near_boundary(mesh, called, size), d)
     return found
 
 
