@@ -16,6 +16,7 @@ from .laws.gradation import graded
 from .laws.implied import implied_metric
 from .laws.normalisation import normalised, normalised_space_time
 from .laws.refinement import limited_refinement
+from .pipeline.finished import finished
 from .pipeline.from_fields import from_fields
 from .pipeline.from_instants import SpaceTimeLedger, from_instants
 from .pipeline.ledger import Ledger, Stage
@@ -67,6 +68,7 @@ __all__ = [
     "dwr_metric",
     "estimate",
     "exp_metric",
+    "finished",
     "flux_hessian",
     "from_components",
     "from_fields",

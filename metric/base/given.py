@@ -28,10 +28,15 @@ class Given(NamedTuple):
         return {name: self.fields[name] for name in self.names or self.fields}
 
     def for_metric(self) -> dict[str, Any]:
-        """Return the fields that are singled out, or all scalars and vectors at the points."""
+        """Return the fields that are singled out, or all scalars and vectors.
+
+        Those in cells count where there are none at the points.
+        """
         if self.names is not None:
             return self.named()
-        return {name: field for name, field in self.fields.items() if _is_usual(field)}
+        usable = {name: field for name, field in self.fields.items() if _is_usable(field)}
+        at_points = {name: field for name, field in usable.items() if field.on == "points"}
+        return at_points or usable
 
 
 def given_fields(held: Mapping[str, Any], given: Any) -> Given:
@@ -90,6 +95,5 @@ def _names(given: Any) -> tuple[str, ...] | None:
     return None
 
 
-def _is_usual(field: Any) -> bool:
-    on, kind = getattr(field, "on", "points"), getattr(field, "kind", "scalar")
-    return on == "points" and kind in ("scalar", "vector")
+def _is_usable(field: Any) -> bool:
+    return field.on in ("points", "cells") and field.kind in ("scalar", "vector")

@@ -126,7 +126,7 @@ class TestBadInput:
             adapt(self.mesh, {"k": np.arange(25)}, wanted)
 
     def test_no_usable_field_is_said(self):
-        with pytest.raises(ValueError, match="no scalar or vector field at the points"):
+        with pytest.raises(ValueError, match="no scalar or vector field on points or cells"):
             adapt(self.mesh, {}, options())
 
     def test_nan_is_named_with_field_and_point(self):

@@ -61,7 +61,7 @@ class AdaptOptions:
         From the old mesh to the new one; by default points outside take the nearest value.
     metric_fields : sequence of str, optional
         Names of the fields that make the metric; None means every scalar and vector field at
-        the points.
+        the points, or in the cells if there is none at the points.
     max_refinement : float, optional
         That of `remesh`, in its place: the factor by which sizes shrink in one adaptation at
         most, for a first mesh that is much too coarse.
@@ -404,7 +404,9 @@ def _corrected(
 def metric_field_names(
     fields: Mapping[str, Field], wanted: Sequence[str] | None
 ) -> tuple[str, ...]:
-    """Return the names of the fields that make the metric: those wanted, or all at the points.
+    """Return the names of the fields that make the metric.
+
+    These are the wanted ones, or all at the points, or where there are none all in the cells.
 
     Raises
     ------
@@ -426,12 +428,11 @@ def metric_field_names(
                 f"vector on points or cells{_about_labels([field])}"
             )
     at_points = tuple(name for name in usable if fields[name].on == "points")
-    names = tuple(wanted) if wanted is not None else at_points
+    names = tuple(wanted) if wanted is not None else at_points or usable
     if not names:
         raise ValueError(
-            "no scalar or vector field at the points to make a metric of; the fields are: "
-            f"{_listed(fields)}; those on cells take part when metric_fields names them"
-            f"{_about_labels(fields.values())}"
+            "no scalar or vector field on points or cells to make a metric of; the fields are: "
+            f"{_listed(fields)}{_about_labels(fields.values())}"
         )
     return names
 

@@ -125,8 +125,11 @@ def _check_shape(name: str, field: Field, mesh: Mesh) -> None:
     where = "points" if field.on == "points" else "cells"
     expected = mesh.n_points if field.on == "points" else mesh.n_cells
     if len(field.values) != expected:
+        is_cellwise = where == "points" and len(field.values) == mesh.n_cells
+        advice = ": give Field(values, on='cells') for values in cells" if is_cellwise else ""
+        found = len(field.values)
         raise ValueError(
-            f"field {name!r} has {len(field.values)} values, the mesh has {expected} {where}"
+            f"field {name!r} has {found} values, the mesh has {expected} {where}{advice}"
         )
     components = field.values.shape[1:]
     if field.on == "cell_nodes":
