@@ -119,7 +119,7 @@ def test_a_solution_file_is_no_mesh(tmp_path):
         (HEAD + POINTS + CELLS.replace("1 3 4", "3 2 1") + "End\n", "cell 1 repeats cell 0"),
         (HEAD + POINTS.replace("1 1 0", "NaN 1 0") + CELLS + "End\n", "point 2 has a non-finite"),
         (HEAD + POINTS.replace("1 1 0", "0.5 0 0") + CELLS + "End\n", "cell 0 has zero volume"),
-        (HEAD + POINTS + "Quadrilaterals\n1\n1 2 3 4 0\nEnd\n", "quadrilaterals are not"),
+        (HEAD + POINTS + "Quadrilaterals\n1\n1 3 2 4 0\nEnd\n", "is twisted or flat"),
         (HEAD + POINTS + CELLS + "Edges\n1\n2 4 3\nEnd\n", "facet 0 is not a facet of any cell"),
         (HEAD + POINTS + CELLS + "Corners\n1\n9\nEnd\n", "corner refers to point 8 of 4"),
         ("# anistar:names [1\n" + HEAD, "does not begin|a comment of anistar is not JSON"),

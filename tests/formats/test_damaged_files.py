@@ -123,7 +123,7 @@ def test_our_own_files_miss_what_is_cut_off_behind_a_section(tmp_path, suffix):
             "comes twice",
         ),
         ("m.su2", SU2 + "NMARK= 0\n" + SU2, "two parts NDIME="),
-        ("m.su2", SU2.replace("1\n5 0 1 2 0", "1\n9 0 1 2 2") + "NMARK= 0\n", "quadrilaterals"),
+        ("m.su2", SU2.replace("1\n5 0 1 2 0", "1\n9 0 1 2 2") + "NMARK= 0\n", "twisted or flat"),
         (
             "m.inp",
             "*NODE\n1, 0, 0\n1, 1, 0\n*ELEMENT, TYPE=CPS3\n1, 1, 1, 1\n",

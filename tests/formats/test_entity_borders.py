@@ -7,8 +7,8 @@ from remesh3d.test_curved import cylinder
 from surface.creased_shapes import TOP, block, crease
 
 from anistar import read, remesh, validate, write
-from anistar.formats.gmsh import entity_borders
-from anistar.formats.gmsh.entity_borders import LEAST_TURN, STANDING_OUT
+from anistar.formats.content import entity_borders
+from anistar.formats.content.entity_borders import LEAST_TURN, STANDING_OUT
 from anistar.meshes.mesh import Mesh
 
 

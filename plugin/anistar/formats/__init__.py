@@ -66,8 +66,10 @@ METRIC = "metric"
 def read(path: PathLike, *, like: AnyMesh | None = None) -> Any:
     """Read a mesh and its fields.
 
-    Single inverted cells are turned and points without a cell dropped, each with a logged
-    warning; `read_with_report` returns the counts. Planar meshes with z = 0 become 2D.
+    Single inverted cells are turned, points without a cell dropped, quadrilaterals, hexahedra,
+    prisms and pyramids split, and of elements of second order the corners are taken, each with a
+    logged warning; `read_with_report` returns the counts, and the curved edges as a geometry.
+    Meshes at one height become 2D.
 
     Parameters
     ----------

@@ -17,7 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from ..base.arrays import AnyArray
-from .content.raw import KIND_DIM, Block, RawMesh
+from .content.kinds import KINDS
+from .content.raw import Block, RawMesh
 from .parsing.allowance import Allowance
 from .parsing.numbering import Numbering
 from .parsing.reading import reading
@@ -25,18 +26,23 @@ from .parsing.text_rows import integers, parsed
 
 _KEYWORD = re.compile(r"^\*([^,\n]*)(.*)$", re.MULTILINE)
 _COMMENT = re.compile(r"^\*\*.*$", re.MULTILINE)
-_KINDS = {
+_TYPES = {
     "line": ("T2D2", "T2D2H", "T3D2", "T3D2H", "B21", "B21H", "B31", "B31H"),
-    "triangle": ("CPS3", "CPE3", "CAX3", "STRI3", "S3", "S3R", "S3RS", "R3D3"),
+    "triangle": ("CPS3", "CPE3", "CAX3", "STRI3", "S3", "S3R", "S3RS", "R3D3", "M3D3"),
+    "quad": ("CPS4", "CPS4R", "CPE4", "CPE4R", "CAX4", "CAX4P", "S4", "S4R", "M3D4"),
     "tetra": ("C3D4", "C3D4H"),
-    "quad": ("CPS4", "CPS4R", "CPE4", "S4", "S4R", "CAX4P"),
-    "triangle6": ("CPS6", "CPE6", "STRI65"),
+    "pyramid": ("C3D5", "C3D5H"),
+    "wedge": ("C3D6", "C3D6H"),
     "hexahedron": ("C3D8", "C3D8H", "C3D8I", "C3D8R"),
+    "line3": ("T2D3", "T2D3H", "T3D3", "T3D3H", "B22", "B22H", "B32", "B32H"),
+    "triangle6": ("CPS6", "CPS6M", "CPE6", "CPE6M", "CAX6", "STRI65", "M3D6"),
+    "quad8": ("CPS8", "CPS8R", "CPE8", "CPE8R", "CAX8", "S8R", "M3D8"),
+    "quad9": ("M3D9", "M3D9R", "S9R5"),
     "tetra10": ("C3D10", "C3D10H", "C3D10M"),
-    "wedge": ("C3D6",),
+    "wedge15": ("C3D15", "C3D15H"),
+    "hexahedron20": ("C3D20", "C3D20H", "C3D20R"),
 }
-_KIND_OF = {name: kind for kind, names in _KINDS.items() for name in names}
-_NODES_OF_REFUSED = {"quad": 4, "triangle6": 6, "hexahedron": 8, "tetra10": 10, "wedge": 6}
+_KIND_OF = {name: kind for kind, names in _TYPES.items() for name in names}
 _PARAMETERS = {
     "NODE": ("NSET", "SYSTEM"),
     "ELEMENT": ("TYPE", "ELSET"),
@@ -109,7 +115,7 @@ def _read(content: _Content, keyword: str, parameters: dict[str, str], body: str
         kind = _KIND_OF.get(parameters.get("TYPE", "").upper())
         if kind is None:
             raise ValueError(f"elements of type {parameters.get('TYPE', '')[:40]!r} are not known")
-        width = KIND_DIM[kind] + 1 if kind in KIND_DIM else _NODES_OF_REFUSED[kind]
+        width = KINDS[kind].n_nodes
         rows = _integers(keyword, body)
         if len(rows) % (width + 1):
             raise ValueError(f"*ELEMENT has {len(rows)} numbers, no rows of {width + 1}")
@@ -206,7 +212,9 @@ def _raw(content: _Content) -> RawMesh:
     tags = _tags(content, raw)
     starts = np.cumsum([0, *(len(rows) for rows in content.elements)])
     raw.blocks = [
-        Block(kind, number.rows(rows[:, 1:]), tags[start : start + len(rows)])
+        Block(
+            kind, _in_order(kind, number.rows(rows[:, 1:]), raw.points), tags[start:][: len(rows)]
+        )
         for kind, rows, start in zip(content.kinds, content.elements, starts, strict=False)
     ]
     if content.respelled:
@@ -221,12 +229,24 @@ def _raw(content: _Content) -> RawMesh:
     return raw
 
 
+def _in_order(kind: str, rows: AnyArray, points: AnyArray) -> AnyArray:
+    """Return rows with the node in the middle of a line behind its ends, wherever it is given.
+
+    Beams have it between them, other lines behind them, and not all programs keep to that.
+    """
+    if kind != "line3" or len(rows) == 0:
+        return rows
+    first, second, third = (points[rows[:, i]] for i in range(3))
+    is_between = np.linalg.norm(third - first, axis=1) > np.linalg.norm(second - first, axis=1)
+    return np.where(is_between[:, None], rows[:, [0, 2, 1]], rows)
+
+
 def _tags(content: _Content, raw: RawMesh) -> AnyArray:
     """Return the number of the last set that each element is in, and give the names to `raw`."""
     number = Numbering("element", np.concatenate([rows[:, 0] for rows in content.elements]))
     dims = np.concatenate(
         [
-            np.full(len(rows), KIND_DIM.get(kind, -1))
+            np.full(len(rows), KINDS[kind].dim)
             for kind, rows in zip(content.kinds, content.elements, strict=True)
         ]
     )
@@ -242,7 +262,7 @@ def _tags(content: _Content, raw: RawMesh) -> AnyArray:
         chosen = number.rows(members)
         n_lost += int(np.count_nonzero(tags[chosen]))
         tags[chosen] = tag
-        raw.names |= {(int(dim), tag): name for dim in np.unique(dims[chosen]) if dim >= 0}
+        raw.names |= {(int(dim), tag): name for dim in np.unique(dims[chosen])}
     if n_lost:
         raw.warnings.append(f"{n_lost} element(s) are in several sets, the last one is kept")
     return tags

@@ -15,10 +15,12 @@ from pathlib import Path
 import numpy as np
 
 from ..base.arrays import AnyArray, Floats
-from .content.raw import KIND_DIM, KIND_OF_DIM, REFUSED, Block, RawMesh, not_read
+from .content.kinds import KINDS
+from .content.raw import REFUSED, Block, RawMesh, not_read
 from .parsing.reading import reading
+from .parsing.rows import leading_rows
 from .parsing.text_rows import integers, parsed
-from .vtk.cells import KINDS
+from .vtk.cells import kind_of
 
 _KEY = re.compile(r"^[ \t]*([A-Z_0-9]+)[ \t]*=[ \t]*(.*)$", re.MULTILINE)
 _NEEDED = ("NDIME", "NELEM", "NPOIN", "NMARK")
@@ -45,16 +47,17 @@ def _mesh(text: str) -> RawMesh:
     dim = _count(single["NDIME"])
     if dim not in (2, 3):
         raise ValueError(f"NDIME is {dim}, it must be 2 or 3")
-    cells = Block(KIND_OF_DIM[dim], _elements(single["NELEM"], dim))
+    cells = [Block(*run) for run in _elements(single["NELEM"], dim)]
     markers = _markers(entries, dim - 1)
     if len(markers) != _count(single["NMARK"]):
         raise ValueError(f"NMARK announces {single['NMARK'][1]} markers, {len(markers)} follow")
     tags = _tags([name for name, _ in markers])
     blocks = [
-        Block(KIND_OF_DIM[dim - 1], rows, np.full(len(rows), tag, np.int64))
-        for tag, (_, rows) in zip(tags, markers, strict=True)
+        Block(kind, rows, np.full(len(rows), tag, np.int64))
+        for tag, (_, runs) in zip(tags, markers, strict=True)
+        for kind, rows in runs
     ]
-    raw = RawMesh(_points(single["NPOIN"], dim), [cells, *blocks])
+    raw = RawMesh(_points(single["NPOIN"], dim), [*cells, *blocks])
     raw.names = {
         (dim - 1, tag): name
         for tag, (name, _) in zip(tags, markers, strict=True)
@@ -117,26 +120,49 @@ def _table(entry: Entry, widths: tuple[int, ...]) -> Floats:
     )
 
 
-def _elements(entry: Entry, dim: int) -> AnyArray:
-    """Return the points of the elements; their type comes first, a running number may end a row."""
-    first = entry[2].split(None, 1)[:1]
-    kind = KINDS.get(int(first[0]), "") if first and first[0].isdecimal() else ""
-    if kind in REFUSED:
-        raise ValueError(f"{entry[0]} holds elements of type {kind!r}; {REFUSED[kind]}")
-    nodes = dim + 1
-    table = integers(_table(entry, (nodes + 2, nodes + 1)))
-    wrong = np.array([KIND_DIM.get(KINDS.get(int(t), "")) != dim for t in np.unique(table[:, 0])])
-    if wrong.any():
-        raise ValueError(f"{entry[0]} has elements of type {np.unique(table[:, 0])[wrong][0]}")
-    return table[:, 1 : nodes + 1]
+def _elements(entry: Entry, dim: int) -> list[tuple[str, AnyArray]]:
+    """Return runs of one kind and their points.
+
+    The type comes first, and a running number ends all rows or none.
+    """
+    try:
+        values = integers(parsed(entry[2]))
+    except ValueError as error:
+        raise ValueError(f"{entry[0]} {error}") from error
+    for n_behind in (1, 0):
+        runs = _runs(entry, values, dim, n_behind)
+        if sum(len(rows) for _, rows in runs) == _count(entry):
+            return runs
+    raise ValueError(f"{entry[0]} announces {_count(entry)} rows of elements, others follow")
+
+
+def _runs(entry: Entry, values: AnyArray, dim: int, n_behind: int) -> list[tuple[str, AnyArray]]:
+    """Return the runs of rows with as many numbers behind the points, none if they do not fit."""
+    runs, at = [], 0
+    while at < len(values):
+        kind = kind_of(int(values[at]))
+        if kind in REFUSED:
+            raise ValueError(f"{entry[0]} holds elements of type {kind!r}; {REFUSED[kind]}")
+        if kind not in KINDS or KINDS[kind].dim != dim:
+            if n_behind:
+                return []
+            raise ValueError(f"{entry[0]} has elements of type {values[at]}")
+        n_nodes = KINDS[kind].n_nodes
+        width = 1 + n_nodes + n_behind
+        if at + width > len(values):
+            return []
+        rows = leading_rows(values, at, width, [0])
+        runs.append((kind, rows[:, 1 : 1 + n_nodes]))
+        at += rows.size
+    return runs
 
 
 def _points(entry: Entry, dim: int) -> Floats:
     return np.ascontiguousarray(_table(entry, (dim + 1, dim, dim + 2))[:, :dim])
 
 
-def _markers(entries: list[Entry], dim: int) -> list[tuple[str, AnyArray]]:
-    found: list[tuple[str, AnyArray]] = []
+def _markers(entries: list[Entry], dim: int) -> list[tuple[str, list[tuple[str, AnyArray]]]]:
+    found: list[tuple[str, list[tuple[str, AnyArray]]]] = []
     tag, seen = "", set()
     for entry in entries:
         if entry[0] == "MARKER_TAG":

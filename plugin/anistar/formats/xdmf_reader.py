@@ -16,37 +16,48 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from ..base.arrays import AnyArray
+from .content.kinds import KINDS
 from .content.raw import Block, RawMesh
 from .content.tag_arrays import read_tagged
 from .parsing.rows import leading_rows
 from .parsing.text_rows import parsed
 from .parsing.xml_tree import attribute, only_child, root_of
 
-# XDMF's number of a type in a mixture -> (kind, columns before the points, columns in all); a
-# polyline has its number of points behind the type.
+# XDMF's numbers of types in a mixture, and their names where all cells are of one.
 _MIXED = {
-    1: ("vertex", 2, 3),
-    2: ("line", 2, 4),
-    4: ("triangle", 1, 4),
-    5: ("quad", 1, 5),
-    6: ("tetra", 1, 5),
-    7: ("pyramid", 1, 6),
-    8: ("wedge", 1, 7),
-    9: ("hexahedron", 1, 9),
-    34: ("line3", 1, 4),
-    36: ("triangle6", 1, 7),
-    38: ("tetra10", 1, 11),
+    1: "vertex",
+    2: "line",
+    4: "triangle",
+    5: "quad",
+    6: "tetra",
+    7: "pyramid",
+    8: "wedge",
+    9: "hexahedron",
+    34: "line3",
+    35: "quad9",
+    36: "triangle6",
+    37: "quad8",
+    38: "tetra10",
+    39: "pyramid13",
+    40: "wedge15",
+    41: "wedge18",
+    48: "hexahedron20",
+    50: "hexahedron27",
 }
 _UNIFORM = {
-    "triangle": ("triangle", 3),
-    "tetrahedron": ("tetra", 4),
-    "quadrilateral": ("quad", 4),
-    "hexahedron": ("hexahedron", 8),
-    "wedge": ("wedge", 6),
-    "pyramid": ("pyramid", 5),
-    "edge_3": ("line3", 3),
-    "triangle_6": ("triangle6", 6),
-    "tetrahedron_10": ("tetra10", 10),
+    "triangle": "triangle",
+    "tetrahedron": "tetra",
+    "quadrilateral": "quad",
+    "hexahedron": "hexahedron",
+    "wedge": "wedge",
+    "pyramid": "pyramid",
+    "edge_3": "line3",
+    "triangle_6": "triangle6",
+    "quadrilateral_8": "quad8",
+    "quadrilateral_9": "quad9",
+    "tetrahedron_10": "tetra10",
+    "hexahedron_20": "hexahedron20",
+    "hexahedron_27": "hexahedron27",
 }
 _DIMENSIONS = {"XY": 2, "XYZ": 3}
 _IGNORED = ("Time", "Information")
@@ -113,7 +124,8 @@ def _cells(topology: Element) -> tuple[list[str], list[AnyArray]]:
         return _mixed(values.ravel())
     if kind not in _UNIFORM:
         raise ValueError(f"the topology {kind[:40]!r} is not known")
-    name, width = _UNIFORM[kind]
+    name = _UNIFORM[kind]
+    width = KINDS[name].n_nodes
     if values.ndim != 2 or values.shape[1] != width:
         raise ValueError(f"its cells have the shape {values.shape}, {kind} has {width} points")
     return [name], [values]
@@ -136,8 +148,11 @@ def _mixed(values: AnyArray) -> tuple[list[str], list[AnyArray]]:
         number = int(values[at])
         if number not in _MIXED:
             raise ValueError(f"cells of type {number} are not known")
-        kind, before, width = _MIXED[number]
-        alike = [0, 1] if number in _WITH_COUNT else [0]
+        kind = _MIXED[number]
+        # a polyline has its number of points behind the type
+        before = 2 if number in _WITH_COUNT else 1
+        width = before + KINDS[kind].n_nodes
+        alike = list(range(before))
         run = leading_rows(values, at, width, alike)
         if number in _WITH_COUNT and int(run[0, 1]) != width - before:
             raise ValueError(f"a {kind} of {run[0, 1]} points is not supported")

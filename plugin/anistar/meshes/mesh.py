@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields
 from typing import Any
@@ -23,14 +24,16 @@ from .violations import (
 # Optional arrays are never None once constructed, so the fields keep their array types.
 _NOT_GIVEN: Any = None
 
+_FILES_ARE_SPLIT = "anistar.read splits those of a file, here give the simplices"
 _UNSUPPORTED = {
-    (2, 4): "quadrilaterals are not supported: split them into triangles",
-    (2, 6): "quadratic triangles (P2 geometry) are not supported: give the three corners",
-    (3, 8): "hexahedra are not supported: split them into tetrahedra",
-    (3, 6): "prisms and surface meshes in 3D are not supported",
-    (3, 5): "pyramids are not supported: split them into tetrahedra",
-    (3, 10): "quadratic tetrahedra (P2 geometry) are not supported: give the four corners",
-    (3, 3): "surface meshes in 3D are not supported; for a planar mesh give points[:, :2]",
+    (2, 4): f"these are quadrilaterals: {_FILES_ARE_SPLIT}",
+    (2, 6): "these are quadratic triangles: give the three corners, cells[:, :3]",
+    (3, 8): f"these are hexahedra: {_FILES_ARE_SPLIT}",
+    (3, 6): f"these are prisms, or a surface mesh: {_FILES_ARE_SPLIT}",
+    (3, 5): f"these are pyramids: {_FILES_ARE_SPLIT}",
+    (3, 10): "these are quadratic tetrahedra: give the four corners, cells[:, :4]",
+    (3, 3): "surface meshes in 3D are not supported; for a plane at one height give points[:, :2] "
+    "and z=points[0, 2]",
 }
 
 
@@ -64,6 +67,9 @@ class Mesh:
         Points that a remesher must keep.
     names : mapping of (dim, tag) to str, optional
         Names of tags; `dim` is that of the tagged entities.
+    z : float, optional
+        Height of the plane of a 2D mesh in space, 0 by default; 0 in 3D. Nothing is computed with
+        it: files and other programs that have three coordinates get it.
 
     Raises
     ------
@@ -83,6 +89,7 @@ class Mesh:
     edge_tags: Ints = _NOT_GIVEN
     corners: Ints = _NOT_GIVEN
     names: dict[tuple[int, int], str] = field(default_factory=dict)
+    z: float = 0.0
 
     def __post_init__(self) -> None:
         points = _as_points(self.points)
@@ -98,13 +105,14 @@ class Mesh:
             )
         )
         _complete_facets(given, table)
-        self._store(given, _as_names(self.names, points.shape[1]))
+        names = _as_names(self.names, points.shape[1])
+        self._store(given, names, _as_height(self.z, points.shape[1]))
 
     @classmethod
     def _trusted(cls, **arrays: Any) -> Mesh:
         """Return a mesh of arrays that are known to be valid: nothing is checked or completed."""
         mesh = object.__new__(cls)
-        names = arrays.pop("names", {})
+        names, z = arrays.pop("names", {}), arrays.pop("z", 0.0)
         dim, n_cells = arrays["points"].shape[1], len(arrays["cells"])
         n_facets = len(arrays["facets"]) if "facets" in arrays else 0
         n_edges = len(arrays["edges"]) if "edges" in arrays else 0
@@ -116,15 +124,18 @@ class Mesh:
             "edge_tags": np.zeros(n_edges, np.int32),
             "corners": np.zeros(0, np.int32),
         }
-        mesh._store({**defaults, **arrays}, dict(names))
+        mesh._store({**defaults, **arrays}, dict(names), z)
         return mesh
 
-    def _store(self, arrays: Mapping[str, AnyArray], names: dict[tuple[int, int], str]) -> None:
+    def _store(
+        self, arrays: Mapping[str, AnyArray], names: dict[tuple[int, int], str], z: float
+    ) -> None:
         for name, array in arrays.items():
             view = array.view()
             view.flags.writeable = False
             object.__setattr__(self, name, view)
         object.__setattr__(self, "names", names)
+        object.__setattr__(self, "z", z)
 
     @property
     def dim(self) -> int:
@@ -179,7 +190,7 @@ class Mesh:
         return np.isin(self.cell_tags, tags)
 
     def arrays(self) -> dict[str, Any]:
-        """Return the arrays and names by field name, as the constructor takes them."""
+        """Return the arrays, names and height by field name, as the constructor takes them."""
         return {item.name: getattr(self, item.name) for item in fields(self)}
 
     def __repr__(self) -> str:
@@ -297,3 +308,12 @@ def _as_names(given: Mapping[tuple[int, int], str], dim: int) -> dict[tuple[int,
             raise ValueError(f"names has dimension {key[0]} in {key}, the mesh has {dim}")
         names[int(key[0]), int(key[1])] = name
     return names
+
+
+def _as_height(given: float, dim: int) -> float:
+    z = float(given)
+    if not math.isfinite(z):
+        raise ValueError(f"z, the height of the plane of a 2D mesh, is {z}, not finite")
+    if dim == 3 and z != 0.0:
+        raise ValueError(f"z is the height of the plane of a 2D mesh, a 3D mesh has none, not {z}")
+    return z + 0.0  # no negative zero

@@ -187,6 +187,7 @@ def _new_mesh(made: _core.MeshArrays, mesh: Mesh, geometry: Mesh, scale: float) 
         edge_tags=made.edge_tags,
         corners=_same_points(kept.points[kept.corners], points),
         names={**mesh.names, **geometry.names},
+        z=mesh.z,
     )
 
 

@@ -51,7 +51,7 @@ def metric_glyphs(
     stretch = np.einsum("nij,nj,nkj->nik", vectors, scale * values**-0.5, vectors)
     points = mesh.points[chosen, None, :] + np.einsum("nij,bj->nbi", stretch, ball)
     rows = cells + len(ball) * np.arange(len(chosen))[:, None, None]
-    return _surface(points.reshape(-1, mesh.dim), rows.reshape(-1, cells.shape[1]))
+    return _surface(points.reshape(-1, mesh.dim), rows.reshape(-1, cells.shape[1]), z=mesh.z)
 
 
 def _unit_circle(sides: int = 32) -> tuple[Floats, Longs]:
@@ -72,10 +72,12 @@ def _unit_sphere() -> tuple[Floats, Longs]:
     return vtk_to_numpy(sphere.GetPoints().GetData()).astype(np.float64), rows.astype(np.int64)
 
 
-def _surface(points: Floats, rows: Longs) -> vtkPolyData:
-    """Return polygons as polydata; in the plane z = 0 if the points have two coordinates."""
+def _surface(points: Floats, rows: Longs, *, z: float) -> vtkPolyData:
+    """Return polygons as polydata; points of two coordinates are at the height z."""
     coordinates = vtkPoints()
-    coordinates.SetData(numpy_to_vtk(np.pad(points, ((0, 0), (0, 3 - points.shape[1])))))
+    missing = 3 - points.shape[1]
+    in_space = np.pad(points, ((0, 0), (0, missing)), constant_values=z)
+    coordinates.SetData(numpy_to_vtk(in_space))
     polygons = vtkCellArray()
     polygons.SetData(rows.shape[1], numpy_to_vtkIdTypeArray(rows.ravel(), deep=True))
     surface = vtkPolyData()

@@ -20,7 +20,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkUnstructu
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
 from ...base.arrays import AnyArray
-from ...formats.content.assembly import assembled
+from ...formats.content.assembly import ReadReport, assembled
 from ...formats.content.export import exported
 from ...formats.content.raw import KIND_DIM, RawMesh
 from ...formats.content.tag_arrays import NAMES, TAGS, decoded_names, take_tags
@@ -41,8 +41,8 @@ def to_vtk(
     Parameters
     ----------
     mesh : Mesh
-        2D meshes get z = 0. Cells come first, then facets, ridges and corners as cells of lower
-        dimension; all have their tags in the cell array ``medit:ref``.
+        2D meshes are at their height `z`. Cells come first, then facets, ridges and corners as
+        cells of lower dimension; all have their tags in the cell array ``medit:ref``.
     fields : mapping of str to Field or array, optional
         Vectors get three components, tensors nine, row by row. Cell fields are NaN (labels 0)
         on the cells of lower dimension.
@@ -84,9 +84,9 @@ def from_vtk(grid: Any) -> tuple[Mesh, dict[str, Field]]:
     Parameters
     ----------
     grid : vtkUnstructuredGrid or other vtkDataSet
-        Of triangles or tetrahedra; triangles need z = 0. Cells of lower dimension become
-        facets, ridges and corners; their tags are looked for in ``medit:ref``,
-        ``gmsh:physical`` and ``cell_tags``.
+        Triangles need one z. Quadrilaterals, hexahedra, prisms and pyramids are split, of cells of
+        second order the corners are taken. Cells of lower dimension become facets, ridges and
+        corners; their tags are looked for in ``medit:ref``, ``gmsh:physical`` and ``cell_tags``.
 
     Returns
     -------
@@ -102,6 +102,20 @@ def from_vtk(grid: Any) -> tuple[Mesh, dict[str, Field]]:
     FormatError
         If it holds no valid mesh.
     """
+    mesh, fields, _ = from_vtk_with_report(grid)
+    return mesh, fields
+
+
+def from_vtk_with_report(grid: Any) -> tuple[Mesh, dict[str, Field], ReadReport]:
+    """Return the mesh and fields of a grid as `from_vtk`, and what was changed on the way.
+
+    Raises
+    ------
+    TypeError
+        If it is no unstructured grid.
+    FormatError
+        If it holds no valid mesh.
+    """
     if not isinstance(grid, vtkDataSet):
         kind = getattr(grid, "GetClassName", lambda: type(grid).__name__)()
         raise TypeError(f"a vtkUnstructuredGrid is needed, not {kind}")
@@ -109,8 +123,7 @@ def from_vtk(grid: Any) -> tuple[Mesh, dict[str, Field]]:
     with reading(name):
         raw = _content(as_grid(grid))
         take_tags(raw)
-    mesh, fields, _ = assembled(raw, name)
-    return mesh, fields
+    return assembled(raw, name)
 
 
 def as_grid(data: Any) -> Any:

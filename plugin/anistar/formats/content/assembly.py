@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +13,13 @@ from ...base.arrays import AnyArray
 from ...base.errors import FormatError
 from ...meshes.fields import Field, Kind
 from ...meshes.mesh import Mesh
-from ...meshes.violations import point_violations, volume_signs
+from ...meshes.violations import volume_signs
 from ...metric.tensors.orders import from_components
-from .raw import KIND_DIM, KIND_OF_DIM, REFUSED, Block, RawMesh
+from .raw import Block, RawMesh
+from .second_order import MidNodes, curved_geometry
+from .simplices import Simplices, simplices_of
 
 _log = logging.getLogger(__name__)
-
-# Third coordinates below this part of the mesh's extent are taken for a plane z = 0.
-PLANAR = 1e-14
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,19 +36,34 @@ class ReadReport:
         Points that belonged to no cell.
     repeated_facets : int
         Facets and edges given more than once; the first one counts.
+    split_elements : int
+        Quadrilaterals, hexahedra, prisms and pyramids, each now several simplices.
+    mid_nodes : int
+        Nodes of elements of second order that are no corners; the mesh and the fields are
+        without them.
     warnings : tuple of str
         All changes in words.
+    geometry : Mesh or None
+        Where the edges of elements of second order are curved, a finer mesh whose facets follow
+        them: what functions that remesh take as `geometry`.
     """
 
     path: str
     flipped_cells: int = 0
     dropped_points: int = 0
     repeated_facets: int = 0
+    split_elements: int = 0
+    mid_nodes: int = 0
     warnings: tuple[str, ...] = ()
+    geometry: Mesh | None = field(default=None, repr=False, compare=False)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the report as JSON builtins."""
-        return {**asdict(self), "warnings": list(self.warnings)}
+        """Return the report as JSON builtins, of the geometry only whether there is one."""
+        values = {item.name: getattr(self, item.name) for item in fields(self)}
+        return values | {
+            "warnings": list(self.warnings),
+            "geometry": self.geometry is not None,
+        }
 
 
 def assembled(raw: RawMesh, path: Path) -> tuple[Mesh, dict[str, Field], ReadReport]:
@@ -67,41 +81,48 @@ def assembled(raw: RawMesh, path: Path) -> tuple[Mesh, dict[str, Field], ReadRep
 
 
 def _assembled(raw: RawMesh, path: Path) -> tuple[Mesh, dict[str, Field], ReadReport]:
-    dim = _domain_dim(raw)
-    blocks = {d: _merged(raw, d) for d in range(dim + 1)}
-    for violation in point_violations(raw.points):
-        raise ValueError(violation.message)
-    for block in blocks.values():
-        _check_indices(block, len(raw.points))
-    cells = blocks[dim]
-    points = _in_dimension(raw.points, dim, cells.rows)
-    used = np.zeros(len(points), dtype=bool)
-    used[cells.rows] = True
+    found = simplices_of(raw)
+    dim, cells, used = found.dim, found.blocks[found.dim], found.used
     number = np.cumsum(used) - 1
-    rows, flipped = _flipped(points, cells.rows)
-    notes = list(raw.warnings)
+    rows, flipped = _flipped(found.points, cells.rows)
+    notes = [*raw.warnings, *found.notes]
     _note(notes, flipped, "inverted cell(s) flipped, the first is cell")
-    _note(notes, ~used, "point(s) without a cell dropped, the first is point")
-    lower, repeated = _lower_arrays(blocks, dim, used, notes)
+    unused = ~used & ~found.is_mid
+    _note(notes, unused, "point(s) without a cell dropped, the first is point")
+    lower, repeated = _lower_arrays(found.blocks, dim, used, notes)
     mesh = Mesh(
-        points=points[used],
+        points=found.points[used],
         cells=number[rows],
-        cell_tags=_tags(cells),
-        corners=number[_corners(raw, blocks[0], used)],
+        cell_tags=np.asarray(cells.tags),
+        corners=number[_corners(found, used)],
         names={key: name for key, name in raw.names.items() if key[0] <= dim},
+        z=found.z,
         **lower,
     )
+    geometry, told = _geometry(mesh, found, used)
     fields = _fields(raw, cells, used, dim)
-    for text in notes:
+    for text in [*notes, *told]:
         _log.warning("%s: %s", path, text)
     report = ReadReport(
         path=str(path),
         flipped_cells=int(flipped.sum()),
-        dropped_points=int((~used).sum()),
+        dropped_points=int(unused.sum()),
         repeated_facets=repeated,
-        warnings=tuple(notes),
+        split_elements=found.n_split,
+        mid_nodes=int((found.is_mid & ~used).sum()),
+        warnings=(*notes, *told),
+        geometry=geometry,
     )
     return mesh, fields, report
+
+
+def _geometry(mesh: Mesh, found: Simplices, used: AnyArray) -> tuple[Mesh | None, list[str]]:
+    """Return the mesh through the nodes on curved edges, in the numbers of the mesh."""
+    kept = used[found.mids.edges].all(axis=1)
+    number = np.cumsum(used) - 1
+    nodes = found.mids.nodes[kept]
+    mids = MidNodes(number[found.mids.edges[kept]], nodes, found.mids.is_unique)
+    return curved_geometry(mesh, mids, found.points[nodes])
 
 
 def _lower_arrays(
@@ -121,8 +142,8 @@ def _lower_arrays(
     return arrays, repeated
 
 
-def _corners(raw: RawMesh, vertices: Block, used: AnyArray) -> AnyArray:
-    corners = np.unique(np.r_[raw.corners, vertices.rows.ravel()].astype(np.int64))
+def _corners(found: Simplices, used: AnyArray) -> AnyArray:
+    corners = np.unique(np.r_[found.corners, found.blocks[0].rows.ravel()])
     inside = (corners >= 0) & (corners < len(used))
     if not inside.all():
         raise ValueError(f"corner refers to point {corners[~inside][0]} of {len(used)}")
@@ -134,67 +155,6 @@ def _note(notes: list[str], mask: AnyArray, text: str) -> None:
         notes.append(f"{mask.sum()} {text} {np.argmax(mask)}")
 
 
-def _domain_dim(raw: RawMesh) -> int:
-    kinds = {block.kind for block in raw.blocks if len(block.rows)}
-    refused = sorted(kinds - KIND_DIM.keys())
-    if refused:
-        mixed = "cells of mixed types: " if kinds & {"triangle", "tetra"} else ""
-        reason = REFUSED.get(refused[0], "only triangles and tetrahedra are")
-        raise ValueError(f"{mixed}it holds elements of type {refused[0]!r}; {reason}")
-    if "tetra" in kinds:
-        return 3
-    if "triangle" in kinds:
-        return 2
-    raise ValueError("the mesh is empty: it has no triangles and no tetrahedra")
-
-
-def _merged(raw: RawMesh, dim: int) -> Block:
-    """Return all blocks of one dimension as one, with the data that all of them carry."""
-    kind = KIND_OF_DIM[dim]
-    blocks = [block for block in raw.blocks if block.kind == kind and len(block.rows)]
-    if not blocks:
-        return Block(kind, np.zeros((0, dim + 1), np.int64), np.zeros(0, np.int64))
-    common = set.intersection(*(set(block.data) for block in blocks))
-    ordered = [name for name in blocks[0].data if name in common]
-    return Block(
-        kind,
-        np.concatenate([block.rows for block in blocks]).astype(np.int64),
-        np.concatenate([_tags(block) for block in blocks]),
-        {name: np.concatenate([block.data[name] for block in blocks]) for name in ordered},
-    )
-
-
-def _tags(block: Block) -> AnyArray:
-    return np.zeros(len(block.rows), np.int64) if block.tags is None else block.tags
-
-
-def _check_indices(block: Block, n_points: int) -> None:
-    outside = (block.rows < 0) | (block.rows >= n_points)
-    if outside.any():
-        at = int(np.argmax(outside.any(axis=1)))
-        point = block.rows[outside][0]
-        raise ValueError(
-            f"{block.kind} {at} refers to point {point} (counting from 0), "
-            f"the mesh has {n_points} points"
-        )
-
-
-def _in_dimension(points: AnyArray, dim: int, cells: AnyArray) -> AnyArray:
-    if points.shape[1] == dim:
-        return points
-    if points.shape[1] < dim:
-        raise ValueError(f"tetrahedra need three coordinates, the points have {points.shape[1]}")
-    used = points[cells.ravel()]
-    size = np.ptp(used, axis=0).max(initial=0)
-    height = np.abs(used[:, 2]).max(initial=0)
-    if height > PLANAR * size:
-        raise ValueError(
-            f"it is a surface mesh in 3D, which is not supported: |z| reaches {height:.3g}; "
-            "a planar mesh needs z = 0"
-        )
-    return points[:, :2]
-
-
 def _flipped(points: AnyArray, cells: AnyArray) -> tuple[AnyArray, AnyArray]:
     _, inverted = volume_signs(points, cells)
     turned = cells.copy()
@@ -204,7 +164,7 @@ def _flipped(points: AnyArray, cells: AnyArray) -> tuple[AnyArray, AnyArray]:
 
 def _unrepeated(block: Block) -> tuple[AnyArray, AnyArray, int, int]:
     """Return rows and tags without repetitions, how many there were, and how many disagreed."""
-    tags = _tags(block)
+    tags = np.asarray(block.tags)
     if len(block.rows) == 0:
         return block.rows, tags, 0, 0
     _, first, inverse = np.unique(

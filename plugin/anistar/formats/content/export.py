@@ -6,14 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...base.arrays import AnyArray
+from ...base.arrays import AnyArray, Floats
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from .raw import KIND_OF_DIM, Block, RawMesh
 
 
 def exported(mesh: Mesh, fields: Mapping[str, Field]) -> RawMesh:
-    """Return the mesh with z = 0 where needed, cells first, then facets, ridges and corners.
+    """Return the mesh in space, at its height in 2D, cells first, then facets, ridges and corners.
 
     Vectors get three components and tensors nine. Cell fields have no value on the facets: NaN,
     and 0 for labels.
@@ -33,11 +33,19 @@ def exported(mesh: Mesh, fields: Mapping[str, Field]) -> RawMesh:
             }
             blocks.append(Block(KIND_OF_DIM[dim], rows, tags, data))
     return RawMesh(
-        points=_in_space(mesh.points),
+        points=in_space(mesh),
         blocks=blocks,
         names=dict(mesh.names),
         point_data={name: padded(field) for name, field in fields.items() if field.on == "points"},
     )
+
+
+def in_space(mesh: Mesh) -> Floats:
+    """Return the points of a mesh with three coordinates."""
+    points = _in_space(mesh.points)
+    if mesh.dim == 2 and mesh.z != 0.0:
+        points[:, 2] = mesh.z
+    return points
 
 
 def padded(field: Field) -> AnyArray:

@@ -1,8 +1,9 @@
-"""The JSON that our files carry in comments: names of tags, and names and kinds of fields."""
+"""The JSON that our files carry in comments: names of tags, height, names and kinds of fields."""
 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Collection
 from typing import Any
 
@@ -70,6 +71,13 @@ def labels_of(values: Any) -> set[str]:
     if not all(isinstance(name, str) for name in _listed(values, "labels")):
         raise ValueError("the labels in its comments are damaged: a name is no text")
     return set(values)
+
+
+def height_of(value: Any) -> float:
+    """Return the height of a plane; raise ValueError if it is no finite number."""
+    if type(value) not in (int, float) or not math.isfinite(value):
+        raise ValueError(f"the height z in its comments is damaged: {str(value)[:60]}")
+    return float(value)
 
 
 def _listed(values: Any, what: str) -> list[Any]:

@@ -8,18 +8,13 @@ from typing import Literal
 import numpy as np
 
 from ...base.arrays import AnyArray, Floats
+from .kinds import KINDS
 
-KIND_DIM = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
-KIND_OF_DIM = {dim: kind for kind, dim in KIND_DIM.items()}
+KIND_DIM = {name: kind.dim for name, kind in KINDS.items()}
+KIND_OF_DIM = {0: "vertex", 1: "line", 2: "triangle", 3: "tetra"}
+"""Of the simplices that a mesh is made of."""
 
 REFUSED = {
-    "quad": "quadrilaterals are not supported: split them into triangles",
-    "hexahedron": "hexahedra are not supported: split them into tetrahedra",
-    "wedge": "prisms are not supported: split them into tetrahedra",
-    "pyramid": "pyramids are not supported: split them into tetrahedra",
-    "line3": "quadratic lines (P2 geometry) are not supported",
-    "triangle6": "quadratic triangles (P2 geometry) are not supported",
-    "tetra10": "quadratic tetrahedra (P2 geometry) are not supported",
     "polygon": "polygons are not supported: split them into triangles",
     "polyhedron": "polyhedra are not supported: split them into tetrahedra",
 }
@@ -39,12 +34,16 @@ def not_read(names: list[str], *, what: str = "section", why: str = "not known")
 
 @dataclass
 class Block:
-    """Elements of one kind: (k, nodes) point indices from 0 and (k,) tags."""
+    """Elements of one kind: (k, nodes) point indices from 0 and (k,) tags.
+
+    The entities are those of a CAD model that the elements lie on, where the file says so.
+    """
 
     kind: str
     rows: AnyArray
     tags: AnyArray | None = None
     data: dict[str, AnyArray] = field(default_factory=dict)
+    entities: AnyArray | None = None
 
 
 @dataclass
@@ -65,6 +64,8 @@ class RawMesh:
         Names of the data that the file marks as labels although it stores them as floats.
     warnings : list of str
         What was ignored while reading.
+    z : float
+        Height of the plane, where the points have two coordinates.
     """
 
     points: Floats
@@ -75,3 +76,4 @@ class RawMesh:
     six: Literal["vtk", "xdmf"] | None = None
     labels: set[str] = field(default_factory=set)
     warnings: list[str] = field(default_factory=list)
+    z: float = 0.0

@@ -7,23 +7,35 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import AnyArray
+from ..content.kinds import KINDS
 from ..content.raw import Block
 from ..parsing.numbering import Numbering
 
-# Gmsh's element type -> kind and number of nodes.
-KINDS = {
-    1: ("line", 2),
-    2: ("triangle", 3),
-    3: ("quad", 4),
-    4: ("tetra", 4),
-    5: ("hexahedron", 8),
-    6: ("wedge", 6),
-    7: ("pyramid", 5),
-    8: ("line3", 3),
-    9: ("triangle6", 6),
-    11: ("tetra10", 10),
-    15: ("vertex", 1),
+# Gmsh's element types.
+NAMES = {
+    1: "line",
+    2: "triangle",
+    3: "quad",
+    4: "tetra",
+    5: "hexahedron",
+    6: "wedge",
+    7: "pyramid",
+    8: "line3",
+    9: "triangle6",
+    10: "quad9",
+    11: "tetra10",
+    12: "hexahedron27",
+    13: "wedge18",
+    14: "pyramid14",
+    15: "vertex",
+    16: "quad8",
+    17: "hexahedron20",
+    18: "wedge15",
+    19: "pyramid13",
 }
+# The last two nodes of these are in the other order than those of VTK; of what is split, the
+# corners alone count.
+_LAST_TWO_SWAPPED = "tetra10"
 
 
 @dataclass
@@ -50,9 +62,13 @@ class Elements:
 
 def kind_and_width(number: int) -> tuple[str, int]:
     """Return kind and number of nodes of a type; raise ValueError if it is not known."""
-    if number not in KINDS:
-        raise ValueError(f"Elements: type {number} is not known")
-    return KINDS[number]
+    if number not in NAMES:
+        raise ValueError(
+            f"Elements: type {number} is not known: save linear elements or those of second order "
+            "(gmsh -order 1 or 2)"
+        )
+    kind = NAMES[number]
+    return kind, KINDS[kind].n_nodes
 
 
 def joined(runs: list[Elements]) -> list[Elements]:
@@ -81,9 +97,19 @@ def blocks_of(runs: list[Elements], nodes: Numbering, *, ours: bool) -> list[Blo
     _check_numbers(runs)
     named = ours or any(run.physical.any() for run in runs)
     return [
-        Block(run.kind, nodes.rows(run.nodes), run.physical if named else run.entity)
+        Block(
+            run.kind,
+            _in_order(run.kind, nodes.rows(run.nodes)),
+            run.physical if named else run.entity,
+            entities=run.entity,
+        )
         for run in runs
     ]
+
+
+def _in_order(kind: str, rows: AnyArray) -> AnyArray:
+    """Return nodes in the order of VTK."""
+    return rows[:, [*range(8), 9, 8]] if kind == _LAST_TWO_SWAPPED else rows
 
 
 def _check_numbers(runs: list[Elements]) -> None:

@@ -30,7 +30,6 @@ from .data import (
     read_data,
 )
 from .elements import Elements, blocks_of, joined
-from .entity_borders import keep_borders
 from .streams import Header, Stream, sections
 
 _NAME = re.compile(r'(\d{1,2})[ \t]+(-?\d{1,10})[ \t]+"(.*)"')
@@ -143,5 +142,4 @@ def _raw(content: _Content) -> RawMesh:
         add_node_data(raw, nodes, data, content.allowance)
     for data in last_steps(content.data.get("ElementData", []), raw.warnings):
         add_element_data(raw, runs, data, content.allowance)
-    keep_borders(raw, [run.entity for run in runs])
     return raw

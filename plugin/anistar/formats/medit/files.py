@@ -18,7 +18,7 @@ from ...base.errors import FormatError
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ...metric.tensors.orders import to_components
-from ..content.notes import names_of
+from ..content.notes import height_of, names_of
 from ..content.raw import Block, RawMesh, not_read
 from ..parsing.reading import reading
 from ..suffixes import BINARY, SOLUTION_OF, solution_beside, suffix_of
@@ -28,8 +28,10 @@ from .solution import MeditSolution
 
 _log = logging.getLogger(__name__)
 
-_BLOCKS = {"Edges": "line", "Triangles": "triangle", "Tetrahedra": "tetra"}
-_REFUSED = {
+_BLOCKS = {
+    "Edges": "line",
+    "Triangles": "triangle",
+    "Tetrahedra": "tetra",
     "Quadrilaterals": "quad",
     "Prisms": "wedge",
     "Hexahedra": "hexahedron",
@@ -55,22 +57,20 @@ def read_mesh(path: Path) -> RawMesh:
 def _mesh(container: Container) -> RawMesh:
     if container.points is None:
         raise ValueError("it holds no vertices")
-    blocks = [
-        Block(kind, table[:, :-1] - 1, table[:, -1])
-        for kind, table in _tables(container, {**_BLOCKS, **_REFUSED})
-    ]
+    blocks = [Block(kind, table[:, :-1] - 1, table[:, -1]) for kind, table in _tables(container)]
     nothing = np.zeros((0, 1), np.int64)
     kept = [container.tables.get(keyword, nothing) for keyword in ("Corners", "RequiredVertices")]
     raw = RawMesh(container.points, blocks, np.concatenate(kept)[:, 0] - 1)
     raw.names = names_of(container.notes.get("names", []))
+    raw.z = height_of(container.notes.get("z", 0.0))
     raw.warnings += not_read(container.skipped)
     return raw
 
 
-def _tables(container: Container, kinds: Mapping[str, str]) -> list[tuple[str, AnyArray]]:
+def _tables(container: Container) -> list[tuple[str, AnyArray]]:
     return [
         (kind, container.tables[keyword])
-        for keyword, kind in kinds.items()
+        for keyword, kind in _BLOCKS.items()
         if len(container.tables.get(keyword, ()))
     ]
 
@@ -122,11 +122,7 @@ def write_mesh(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
         container.tables["Ridges"] = np.arange(1, len(mesh.edges) + 1, dtype=np.int64)[:, None]
     if len(mesh.corners):
         container.tables["Corners"] = mesh.corners.astype(np.int64)[:, None] + 1
-    if mesh.names and suffix_of(path) not in BINARY:
-        entries = [[dim, tag, name] for (dim, tag), name in sorted(mesh.names.items())]
-        container.notes["names"] = entries
-    elif mesh.names:
-        _log.warning("%s: the binary medit format has no names, they are not written", path)
+    _add_notes(container, mesh, path)
     solution = path.with_suffix(SOLUTION_OF[suffix_of(path)])
     # Together, so that no new mesh is left with old fields, nor the reverse, when one fails.
     with all_replaced([path, solution] if fields else [path]) as temporaries:
@@ -135,6 +131,21 @@ def write_mesh(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
             gmf.save(temporaries[1], _solution_container(solution, mesh, fields))
     if not fields and (stale := solution_beside(path)) is not None:
         _log.warning("%s: %s is left from before and will be read with it", path, stale.name)
+
+
+def _add_notes(container: Container, mesh: Mesh, path: Path) -> None:
+    """Keep names and height in comments, or warn that the binary encoding has none."""
+    if suffix_of(path) in BINARY:
+        lost = ["names"] if mesh.names else []
+        lost += ["height (z) of a 2D mesh"] if mesh.z else []
+        for what in lost:
+            _log.warning("%s: the binary medit format has no %s, not written", path, what)
+        return
+    if mesh.names:
+        entries = [[dim, tag, name] for (dim, tag), name in sorted(mesh.names.items())]
+        container.notes["names"] = entries
+    if mesh.z:
+        container.notes["z"] = mesh.z
 
 
 def write_solution(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:

@@ -30,8 +30,9 @@ ENTITIES = {
 SOLUTIONS = {"SolAtVertices": 62, "SolAtTriangles": 64, "SolAtTetrahedra": 66}
 
 
-# What comments may hold: names of tags in a mesh, names and kinds of fields in a solution.
-NOTES = ("names", "fields")
+# What comments may hold: names of tags in a mesh and its height, names and kinds of fields in a
+# solution.
+NOTES = ("names", "z", "fields")
 # Sections that say nothing a mesh here could hold, or nothing that it does not know by itself.
 WITHOUT_CONTENT = {
     "RequiredQuadrilaterals": 18,

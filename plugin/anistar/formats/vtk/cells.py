@@ -7,9 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...base.arrays import AnyArray
-from ..content.raw import KIND_DIM, REFUSED, Block
+from ..content.kinds import KINDS
+from ..content.raw import REFUSED, Block
 
-KINDS = {
+NAMES = {
     1: "vertex",
     3: "line",
     5: "triangle",
@@ -23,23 +24,34 @@ KINDS = {
     14: "pyramid",
     21: "line3",
     22: "triangle6",
+    23: "quad8",
     24: "tetra10",
+    25: "hexahedron20",
+    26: "wedge15",
+    27: "pyramid13",
+    28: "quad9",
+    29: "hexahedron27",
+    32: "wedge18",
     42: "polyhedron",
+    68: "line3",
+    69: "triangle6",
+    71: "tetra10",
 }
-_SIZES = {1: 1, 3: 2, 5: 3, 8: 4, 9: 4, 10: 4, 11: 8, 12: 8, 13: 6, 14: 5, 21: 3, 22: 6, 24: 10}
-"""Points of a cell, where all cells of the type have as many."""
+"""The last three are Lagrange elements, here of the second degree."""
+_RASTERS = {8: [0, 1, 3, 2], 11: [0, 1, 3, 2, 4, 5, 7, 6]}
+"""Pixels and voxels do not go around their faces."""
 _TYPES = {"vertex": 1, "line": 3, "triangle": 5, "tetra": 10}
 """Of the kinds that are written."""
 
 
 def kind_of(number: int) -> str:
     """Return the name of a type of cells."""
-    return KINDS.get(number, f"VTK {number}")
+    return NAMES.get(number, f"VTK {number}")
 
 
 def types_and_rows(blocks: list[Block]) -> tuple[AnyArray, AnyArray, AnyArray]:
     """Return types, ends and points of the cells of all blocks, in their order."""
-    sizes = [np.full(len(block.rows), KIND_DIM[block.kind] + 1, np.int64) for block in blocks]
+    sizes = [np.full(len(block.rows), KINDS[block.kind].n_nodes, np.int64) for block in blocks]
     types = [np.full(len(block.rows), _TYPES[block.kind], np.uint8) for block in blocks]
     rows = [block.rows.ravel().astype(np.int64) for block in blocks]
     return np.concatenate(types), np.cumsum(np.concatenate(sizes)), np.concatenate(rows)
@@ -78,14 +90,15 @@ def blocks_of(
     for number in np.unique(types):
         chosen = np.flatnonzero(types == number)
         kind = kind_of(int(number))
-        width = KIND_DIM.get(kind, -1) + 1
+        width = KINDS[kind].n_nodes if kind in KINDS else 0
         rows = np.zeros((len(chosen), 0), np.int64)
         if width:
             wrong = sizes[chosen] != width
             if wrong.any():
                 at = int(np.argmax(wrong))
                 raise ValueError(f"cell {chosen[at]}, a {kind}, has {sizes[chosen[at]]} points")
-            rows = connectivity[(ends[chosen] - width)[:, None] + np.arange(width)]
+            order = _RASTERS.get(int(number), range(width))
+            rows = connectivity[(ends[chosen] - width)[:, None] + np.array(order)]
         members = {name: values[chosen] for name, values in data.items()}
         blocks.append(Block(kind, rows, None, members))
     return blocks
@@ -99,12 +112,13 @@ def ends_of_rows(types: AnyArray, rows: AnyArray) -> tuple[AnyArray, AnyArray]:
     ValueError
         If the rows do not have the lengths of the types.
     """
-    unsized = sorted(set(np.unique(types).tolist()) - _SIZES.keys())
+    sizes_of = {number: KINDS[kind].n_nodes for number, kind in NAMES.items() if kind in KINDS}
+    unsized = sorted(set(np.unique(types).tolist()) - sizes_of.keys())
     if unsized:
         kind = kind_of(unsized[0])
         raise ValueError(f"it holds cells of type {kind!r}; {REFUSED.get(kind, 'split them')}")
     sizes = np.zeros(len(types), np.int64)
-    for number, size in _SIZES.items():
+    for number, size in sizes_of.items():
         sizes[types == number] = size
     ends = np.cumsum(sizes)
     starts = ends - sizes + np.arange(len(sizes))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...base.arrays import AnyArray, Floats
-from ..content.raw import Block, RawMesh
+from .raw import Block
 
 # Pieces that meet at a smaller angle go on smoothly: the tangent of half of 5 degrees.
 LEAST_TURN = 0.0437
@@ -21,35 +21,39 @@ STANDING_OUT = 1.2
 SHARP_TURN = 0.4142
 
 
-def keep_borders(raw: RawMesh, entities: list[AnyArray]) -> None:
-    """Add ridges, in 2D corners, to a mesh where its boundary turns between two entities.
+def borders_in(points: Floats, blocks: list[Block]) -> tuple[list[Block], AnyArray]:
+    """Return ridges, in 2D corners, where the boundary of a mesh turns between two entities.
 
     Parameters
     ----------
-    raw : RawMesh
-        Ridges get tag 0, which says nothing.
-    entities : list of (k,) int arrays
-        Of the elements of each block.
+    points : (n, d) float64
+    blocks : list of Block
+        Simplices; facets whose file names no entities have no such borders.
+
+    Returns
+    -------
+    ridges : list of Block
+        They have tag 0, which says nothing, and are not among the lines of the blocks.
+    corners : (c,) int array
     """
-    is_3d = any(block.kind == "tetra" for block in raw.blocks)
+    is_3d = any(block.kind == "tetra" for block in blocks)
     kind = "triangle" if is_3d else "line"
-    found = [(b, e) for b, e in zip(raw.blocks, entities, strict=True) if b.kind == kind]
+    found = [block for block in blocks if block.kind == kind and block.entities is not None]
+    none = np.zeros(0, np.int64)
     if not found:
-        return
-    rows = np.concatenate([block.rows for block, _ in found])
-    tags = np.concatenate([np.asarray(block.tags) for block, _ in found])
-    entity = np.concatenate([of for _, of in found])
+        return [], none
+    rows = np.concatenate([block.rows for block in found])
+    tags = np.concatenate([np.asarray(block.tags) for block in found])
+    entity = np.concatenate([np.asarray(block.entities) for block in found])
     _, first = np.unique(np.sort(rows, axis=1), axis=0, return_index=True)
     once = rows[first], tags[first], entity[first]
     with np.errstate(all="ignore"):  # what is no mesh is refused later
         if not is_3d:
-            raw.corners = np.r_[raw.corners, border_corners(raw.points, *once)]
-            return
-        edges = border_ridges(raw.points, *once)
-    given = [np.sort(block.rows, axis=1) for block in raw.blocks if block.kind == "line"]
+            return [], border_corners(points, *once)
+        edges = border_ridges(points, *once)
+    given = [np.sort(block.rows, axis=1) for block in blocks if block.kind == "line"]
     new = _rows_not_in(edges, np.concatenate(given)) if given else edges
-    if len(new):
-        raw.blocks.append(Block("line", new, np.zeros(len(new), np.int64)))
+    return [Block("line", new, np.zeros(len(new), np.int64))], none
 
 
 def _rows_not_in(edges: AnyArray, others: AnyArray) -> AnyArray:
