@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..base.arrays import Floats
-from ..formats import read
 from ..formats.suffixes import suffix_of
-from ..judging.cell_arrays import certificate_arrays, without_certificate
+from ..judging.cell_arrays import certificate_arrays
 from ..judging.certificate import known_certificate
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
@@ -18,9 +17,3 @@ def arrays_for(output: Path, mesh: Mesh, metric: Floats) -> dict[str, Field]:
     if suffix_of(output) != ".vtu":
         return {}
     return certificate_arrays(known_certificate(mesh, metric))
-
-
-def read_fields(path: str) -> tuple[Mesh, dict[str, Field]]:
-    """Read a mesh and the fields to carry over: what its certificate said is of no other mesh."""
-    mesh, fields = read(path)
-    return mesh, without_certificate(fields)

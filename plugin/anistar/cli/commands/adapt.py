@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from ...formats import read, write, write_metric
+from ...formats import write, write_metric
 from ...loops.adapt import Adapted, adapt
 from .. import console
-from ..certificate_files import arrays_for, read_fields
+from ..certificate_files import arrays_for
 from ..files import metric_target, replaced_inputs, writable
+from ..inputs import read_input
 from ..options import (
     adapt_options,
     add_metric_options,
@@ -31,7 +32,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="field that makes the metric; may be repeated; all scalars and vectors by default",
     )
-    parser.add_argument("--geometry", metavar="FILE", help="mesh whose boundary is the geometry")
+    parser.add_argument(
+        "--geometry",
+        metavar="FILE",
+        help="mesh whose boundary is the geometry; default: the input, with its curved edges",
+    )
     parser.add_argument("--metric-output", metavar="FILE", help="also write the metric")
     add_metric_options(parser)
     add_remesh_options(parser)
@@ -44,9 +49,9 @@ def run(arguments: argparse.Namespace) -> int:
     output = writable(arguments.output)
     metric_output = metric_target(arguments.metric_output, output)
     options = adapt_options(arguments, metric_fields=arguments.field)
-    mesh, fields = read_fields(arguments.input)
-    geometry = read(arguments.geometry)[0] if arguments.geometry else None
-    done = adapt(mesh, fields, options, geometry=geometry)
+    given = read_input(arguments.input, arguments.geometry, beside_json=arguments.json)
+    mesh = given.mesh
+    done = adapt(mesh, given.fields, options, geometry=given.geometry)
     inputs = (arguments.input, arguments.geometry)
     replaced = replaced_inputs(inputs, output, metric_output)
     write(output, done.mesh, done.fields | arrays_for(output, done.mesh, done.metric))

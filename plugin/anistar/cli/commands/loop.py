@@ -8,7 +8,6 @@ from typing import Any
 
 from ...base.errors import FormatError
 from ...base.report import as_builtin
-from ...formats import read
 from ...judging.certificate import rounded_down
 from ...loops.loop import Loop, LoopError, Step, adapt_loop
 from ...loops.loop_options import LoopOptions
@@ -17,6 +16,7 @@ from ...remeshing.demand import check_targets
 from ...runs.file_solver import FILE_KINDS, FileSolver
 from ...runs.folder import RunFolder
 from .. import console
+from ..inputs import read_input
 from ..options import (
     adapt_options,
     add_metric_options,
@@ -79,7 +79,8 @@ def run(arguments: argparse.Namespace) -> int:
         max_iterations=arguments.max_iterations,
         **settling_options(arguments),
     )
-    mesh, _ = read(arguments.input)
+    given = read_input(arguments.input, beside_json=arguments.json)
+    mesh = given.mesh
     folder = RunFolder(arguments.output, _settings(arguments, options))
     solve = FileSolver(arguments.solver, folder.folder, arguments.format)
     # Here as well, so that no earlier run is removed for one that is refused.
@@ -91,7 +92,9 @@ def run(arguments: argparse.Namespace) -> int:
         finished = folder.load() if arguments.resume else _begun(arguments, folder)
         solve.count = len(finished)
         first = finished[0].mesh if finished else mesh
-        loop = _looped(solve, first, options, folder=folder, is_quiet=arguments.json)
+        loop = _looped(
+            solve, first, options, given.geometry, folder=folder, is_quiet=arguments.json
+        )
     if arguments.json:
         console.show_json(loop)
     else:
@@ -107,7 +110,13 @@ def _begun(arguments: argparse.Namespace, folder: RunFolder) -> list[Step]:
 
 
 def _looped(
-    solve: FileSolver, first: Mesh, options: LoopOptions, *, folder: RunFolder, is_quiet: bool
+    solve: FileSolver,
+    first: Mesh,
+    options: LoopOptions,
+    geometry: Mesh | None,
+    *,
+    folder: RunFolder,
+    is_quiet: bool,
 ) -> Loop:
     """Run the loop after the steps that the folder holds, and save every further one."""
     finished = list(folder.steps)
@@ -119,7 +128,9 @@ def _looped(
             advance(f"{step.mesh.n_points} points")
 
         try:
-            loop = adapt_loop(solve, first, options, callback=moved, finished=finished)
+            loop = adapt_loop(
+                solve, first, options, geometry=geometry, callback=moved, finished=finished
+            )
         except LoopError as error:
             with suppress(FormatError):  # the disk that is full, say, is in the first error
                 folder.close(error.loop)

@@ -6,14 +6,15 @@ import argparse
 from pathlib import Path
 
 from ...base.errors import FormatError
-from ...formats import METRIC, read, read_metric, write, write_metric
+from ...formats import METRIC, read_metric, write, write_metric
 from ...formats.suffixes import SOLUTION_OF, solution_beside, suffix_of
 from ...meshes.fields import Field
 from ...remeshing.remesh import remesh
 from ...transfer import transfer
 from .. import console
-from ..certificate_files import arrays_for, read_fields
+from ..certificate_files import arrays_for
 from ..files import metric_target, replaced_inputs, writable
+from ..inputs import read_input
 from ..options import adapt_options, add_remesh_options
 
 SUMMARY = "remesh to a given metric, and carry the fields over"
@@ -34,7 +35,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="metric at the new points; for out.mesh without fields it goes to out.sol anyway",
     )
-    parser.add_argument("--geometry", metavar="FILE", help="mesh whose boundary is the geometry")
+    parser.add_argument(
+        "--geometry",
+        metavar="FILE",
+        help="mesh whose boundary is the geometry; default: the input, with its curved edges",
+    )
     add_remesh_options(parser)
 
 
@@ -47,12 +52,12 @@ def run(arguments: argparse.Namespace) -> int:
     source = Path(arguments.metric) if arguments.metric else beside
     if source is None:
         raise FormatError(f"no metric: give --metric, there is no .sol beside {arguments.input}")
-    mesh, fields = read_fields(arguments.input)
+    given = read_input(arguments.input, arguments.geometry, beside_json=arguments.json)
+    mesh = given.mesh
     M = read_metric(source, mesh)
-    geometry = read(arguments.geometry)[0] if arguments.geometry else None
-    done = remesh(mesh, M, options.remesh, geometry=geometry)
+    done = remesh(mesh, M, options.remesh, geometry=given.geometry)
     # The solution beside a medit mesh is the metric itself, not a field to carry.
-    carried = {} if source == beside else fields
+    carried = {} if source == beside else given.fields
     fields = transfer(mesh, carried, done.mesh, options.transfer).fields
     if metric_output is None and not fields and suffix_of(output) in SOLUTION_OF:
         fields = {METRIC: Field(done.metric)}

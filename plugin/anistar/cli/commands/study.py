@@ -7,7 +7,6 @@ import importlib
 import tempfile
 from typing import Any
 
-from ...formats import read
 from ...loops.loop import Solve
 from ...loops.study import BASELINES, convergence_study
 from ...meshes.mesh import Mesh
@@ -15,6 +14,7 @@ from ...runs.file_solver import FileSolver
 from .. import console
 from ..expression import function_of_position
 from ..files import new_file
+from ..inputs import read_input
 from ..options import (
     adapt_options,
     add_metric_options,
@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     for path in filter(None, (arguments.csv, arguments.picture)):
         new_file(path, force=arguments.force, keep=[arguments.input])
     exact = function_of_position(arguments.exact)
-    mesh, _ = read(arguments.input)
+    given = read_input(arguments.input, beside_json=arguments.json)
 
     def interpolated(mesh: Mesh, fields: dict[str, Any]) -> dict[str, Any]:
         return {"u": exact(mesh.points)}
@@ -76,9 +76,10 @@ def run(arguments: argparse.Namespace) -> int:
             solve = FileSolver(arguments.solver, folder)
         study = convergence_study(
             solve,
-            mesh,
+            given.mesh,
             arguments.complexities,
             exact=exact,
+            geometry=given.geometry,
             repeats=arguments.repeats,
             **settling_options(arguments),
             options=adapt_options(arguments),

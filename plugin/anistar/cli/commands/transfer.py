@@ -8,8 +8,8 @@ from typing import Any
 from ...formats import read, write
 from ...transfer import METHODS, FieldChange, TransferOptions, TransferReport, transfer
 from .. import console
-from ..certificate_files import read_fields
 from ..files import replaced_inputs, writable
+from ..inputs import read_fields
 from ..options import add_outside_option
 
 SUMMARY = "carry the fields of one mesh to another"
