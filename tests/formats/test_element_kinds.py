@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from meshes import cube, square
 
-from anistar import formats
+from anistar import formats, remesh
 from anistar.formats.content.kinds import KINDS
 from anistar.meshes.validation import validate
 
@@ -237,3 +237,18 @@ def test_every_kind_has_its_corners_first():
         assert corners.dim == kind.dim
         nodes = sorted(itertools.chain.from_iterable(kind.mids))
         assert nodes == [] or name.startswith("quad") or set(nodes) == set(range(kind.n_nodes))
+
+
+@pytest.mark.parametrize("form", ["path", "meshio", "pyvista"])
+def test_curved_edges_of_any_object_are_what_is_remeshed(tmp_path, form):
+    content = of_second_order(square(2), lambda x: x + 0.05 * np.sin(np.pi * x[::-1]))
+    content.write(tmp_path / "m.vtu")
+    held = {
+        "path": lambda: tmp_path / "m.vtu",
+        "meshio": lambda: content,
+        "pyvista": lambda: pytest.importorskip("pyvista").read(tmp_path / "m.vtu"),
+    }[form]()
+    new = remesh(held, np.tile(36 * np.eye(2), (9, 1, 1))).mesh
+    outline = np.minimum(new.points, 1 - new.points)[np.unique(new.facets)]
+    assert np.count_nonzero(np.abs(outline).min(axis=1) > 0.02) > 8  # off the straight square
+    assert validate(new) == []

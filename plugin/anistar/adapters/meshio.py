@@ -81,8 +81,8 @@ def _content(other: Any) -> Content:
     take_tags(raw)
     if all(block.tags is None for block in raw.blocks):
         _tag_by_sets(raw, other.cell_sets)
-    mesh, fields, _ = assembled(raw, _SOURCE)
-    return Content(mesh, fields)
+    mesh, fields, report = assembled(raw, _SOURCE)
+    return Content(mesh, fields, report.geometry)
 
 
 def _raw(other: Any) -> RawMesh:

@@ -233,8 +233,8 @@ def write_metric(path: PathLike, mesh: Mesh, M: ArrayLike) -> None:
 
 
 def _content(path: Any) -> Content:
-    mesh, fields, _ = read_with_report(path)
-    return Content(mesh, fields)
+    mesh, fields, report = read_with_report(path)
+    return Content(mesh, fields, report.geometry)
 
 
 register(Form(name="path", accepts=lambda obj: isinstance(obj, str | os.PathLike), read=_content))

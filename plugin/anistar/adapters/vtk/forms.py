@@ -13,7 +13,7 @@ from ...formats.content.raw import KIND_DIM
 from ...formats.vtk.cells import kind_of
 from ...meshes.mesh import Mesh
 from ...objects import Content, Form, register
-from .grids import as_grid, cell_types, from_vtk, to_vtk
+from .grids import as_grid, cell_types, from_vtk_with_report, to_vtk
 
 
 def _is_grid(obj: object) -> bool:
@@ -25,7 +25,8 @@ def _is_pyvista(obj: object) -> bool:
 
 
 def _read(data: Any) -> Content:
-    return Content(*from_vtk(data))
+    mesh, fields, report = from_vtk_with_report(data)
+    return Content(mesh, fields, report.geometry)
 
 
 def _make(mesh: Mesh, fields: Mapping[str, Any], like: Any) -> Any:
