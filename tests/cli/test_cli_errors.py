@@ -186,7 +186,7 @@ def test_an_interrupt_is_one_line_too(folder, capsys, monkeypatch):
     def interrupted(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("anistar.cli.commands.convert.write", interrupted)
+    monkeypatch.setattr("anistar.cli.commands.convert.put", interrupted)
     assert run("convert in.vtu o.vtu") == 1
     assert capsys.readouterr().err == "anistar convert: interrupted\n"
 

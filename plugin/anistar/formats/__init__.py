@@ -18,6 +18,7 @@ from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..objects import AnyMesh, Content, Form, made, opened, register
 from . import inp_reader, meshio_writer, su2_reader, su2_writer, xdmf_reader
+from .carried import holdable, losses
 from .content.assembly import ReadReport, assembled
 from .content.export import exported
 from .content.raw import RawMesh
@@ -30,7 +31,10 @@ from .vtk import legacy_reader, vtu_reader, vtu_writer
 __all__ = [
     "FormatError",
     "ReadReport",
+    "holdable",
     "is_known",
+    "losses",
+    "put",
     "read",
     "read_metric",
     "read_with_report",
@@ -129,30 +133,39 @@ def write(
     ValueError
         If a field does not fit the mesh.
     FormatError
-        If the path cannot be written, or the format cannot hold what is given.
+        If the path cannot be written, or the format has no place for a field.
+
+    Notes
+    -----
+    What else the format does not carry is a logged warning; `losses` tells it beforehand.
     """
-    path = Path(path)
     held = opened(mesh)
-    mesh = held.mesh
-    checked = as_fields(mesh, {**held.fields, **(fields or {})})
-    for name, field in checked.items():
+    checked = as_fields(held.mesh, {**held.fields, **(fields or {})})
+    put(path, held.mesh, checked)
+    if suffix_of(Path(path)) not in SOLUTIONS:
+        for text in losses(held.mesh, checked, path):
+            _log.warning("%s: this format does not carry %s", path, text)
+
+
+def put(path: PathLike, mesh: Mesh, fields: Mapping[str, Field]) -> None:
+    """Write as `write`, without a word on what is lost."""
+    path = Path(path)
+    for name, field in fields.items():
         if field.on == "cell_nodes":
             raise FormatError(
                 f"cannot write {path}: field {name!r} lives at the nodes of cells, and files hold "
                 "values at points and in cells"
             )
     if suffix_of(path) in _WRITERS:
-        _WRITERS[suffix_of(path)](path, mesh, checked)
+        _WRITERS[suffix_of(path)](path, mesh, fields)
         return
     if suffix_of(path) in SOLUTIONS:
-        medit_files.write_solution(path, mesh, checked)
+        medit_files.write_solution(path, mesh, fields)
         return
     if not is_known(path):
         raise FormatError(f"cannot write {path}: no format has the suffix {path.suffix!r}")
-    if mesh.names:
-        _log.warning("%s: this format has no names, they are not written", path)
     with replaced(path) as temporary:
-        meshio_writer.write(temporary, exported(mesh, checked), path)
+        meshio_writer.write(temporary, exported(mesh, fields), path)
 
 
 def is_known(path: PathLike) -> bool:

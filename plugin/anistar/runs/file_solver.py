@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from ..base.errors import FormatError
-from ..formats import read_with_report, write
-from ..meshes.fields import Field
+from ..formats import put, read_with_report
+from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..meshes.renumbering import renumbering
 
@@ -97,7 +97,8 @@ class FileSolver:
         """
         mesh_file, solution_file = self._paths()
         solution_file.unlink(missing_ok=True)
-        write(mesh_file, mesh, fields if self.kind in _WITH_FIELDS else None)
+        sent = as_fields(mesh, fields) if self.kind in _WITH_FIELDS else {}
+        put(mesh_file, mesh, sent)
         self._run(mesh_file, solution_file)
         if not solution_file.is_file():
             raise RuntimeError(f"the solver wrote no {solution_file}")

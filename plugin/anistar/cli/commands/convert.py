@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
 
-from ...formats import read_with_report, write
+from ...formats import holdable, losses, put, read_with_report
 from .. import console
 from ..files import replaced_inputs, writable
 
@@ -16,17 +19,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("input", help="mesh; in.mesh picks up in.sol")
     parser.add_argument("output", help="the suffix chooses the format")
+    parser.add_argument(
+        "--dry-run", action="store_true", help="say what would be lost, and write nothing"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output, is_mesh=False)
     mesh, fields, report = read_with_report(arguments.input)
-    replaced = replaced_inputs([arguments.input], output)
-    write(output, mesh, fields)
-    console.say_replaced(replaced, "what was read from it", beside_json=arguments.json)
-    if arguments.json:
-        console.show_json(report)
+    lost = losses(mesh, fields, output)
+    kept = holdable(mesh, fields, output)
+    if arguments.dry_run:
+        with tempfile.TemporaryDirectory() as folder:
+            put(Path(folder) / output.name, mesh, kept)  # what cannot be written is an error
     else:
-        console.say(f"{arguments.output}: {mesh.n_points} points, {mesh.n_cells} cells")
+        replaced = replaced_inputs([arguments.input], output)
+        put(output, mesh, kept)
+        console.say_replaced(replaced, "what was read from it", beside_json=arguments.json)
+    if arguments.json:
+        console.show_json({**report.as_dict(), "lost": lost})
+        return 0
+    verb = "would have" if arguments.dry_run else "has"
+    console.say(f"{output} {verb} {mesh.n_points} points, {mesh.n_cells} cells")
+    _show(lost, "would be lost" if arguments.dry_run else "lost")
     return 0
+
+
+def _show(lost: Sequence[str], verb: str) -> None:
+    for text in lost:
+        console.say(f"  {verb}: {text}")
+    if not lost:
+        console.say(f"  nothing {verb}")

@@ -134,12 +134,8 @@ def write_mesh(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
 
 
 def _add_notes(container: Container, mesh: Mesh, path: Path) -> None:
-    """Keep names and height in comments, or warn that the binary encoding has none."""
+    """Keep names and height in comments, which the binary encoding has not."""
     if suffix_of(path) in BINARY:
-        lost = ["names"] if mesh.names else []
-        lost += ["height (z) of a 2D mesh"] if mesh.z else []
-        for what in lost:
-            _log.warning("%s: the binary medit format has no %s, not written", path, what)
         return
     if mesh.names:
         entries = [[dim, tag, name] for (dim, tag), name in sorted(mesh.names.items())]
