@@ -12,6 +12,7 @@ from anistar.adapters import dolfinx_wheel
 ARGUMENTS = {
     "advection_diffusion": "--complexities 500 1000 2000 --output {folder}/heat.vtu",
     "boundary_layer": "--dim 3 --complexities 500 1000 --sizes 8 13",
+    "convection": "--complexities 125 250 500 --sizes 16 32",
     "cubic_reaction": "--dim 3 --complexities 500 1000 --sizes 8 13",
     "moving_front": "--complexity 400 --end 0.2 --steps 40 --output {folder}/series.pvd",
     "outflow_layers": "--complexities 500 1000 2000 --sizes 8 16",
@@ -21,12 +22,13 @@ ARGUMENTS = {
     "rotating_cone": "--n-transfers 10 --size 0.04",
 }
 
-#: What each folder of examples needs.
+#: What each folder of examples needs: a package, or a program.
 PACKAGES = {
     "scikit_fem": "skfem",
     "dolfinx": "dolfinx",
     "ngsolve": "ngsolve",
     "mfem": "mfem",
+    "freefem": "FreeFem++",
     "petsc": "petsc4py",
     "transfer": "matplotlib",
 }
@@ -43,6 +45,8 @@ def runnable() -> str:
 
 
 def _is_installed(package: str) -> bool:
+    if shutil.which(package):
+        return True
     try:
         importlib.import_module(package)
     except ImportError:

@@ -1,5 +1,7 @@
 """The solver examples gain over uniform refinement what their pages say."""
 
+import shutil
+
 import pytest
 from example_runs import gain, rows_of, run
 
@@ -20,6 +22,13 @@ def test_mfem_finds_boundary_layers_at_a_fortieth_of_the_error(tmp_path):
     pytest.importorskip("anistar.adapters.mfem")
     rows = run("mfem/boundary_layer.py", tmp_path, complexities=(125, 250, 500), sizes=(26, 32))
     assert gain(rows) > 40
+
+
+def test_freefem_finds_layers_at_a_twentieth_of_the_error_and_keeps_its_labels(tmp_path):
+    if shutil.which("FreeFem++") is None:
+        pytest.skip("no FreeFem++ on the path: apt-get install freefem++")
+    rows = run("freefem/convection.py", tmp_path, complexities=(125, 250, 500), sizes=(26, 32))
+    assert gain(rows) > 20
 
 
 def test_a_mesh_that_follows_a_front_has_a_fifth_of_the_error(tmp_path):
