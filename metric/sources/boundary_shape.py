@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from ..base.arrays import Floats, Ints
 from ..base.vectors import norms
@@ -98,6 +97,8 @@ def surface_shape(points: Floats, triangles: Ints, tags: Ints, ridge_angle: floa
 
 def _patches(points: Floats, triangles: Ints, tags: Ints, ridge_angle: float) -> Ints:
     """Patch (k,) of each triangle: connected across edges that are no ridges."""
+    from scipy.sparse.csgraph import connected_components  # slow to import
+
     m = len(triangles)
     edges = np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]])
     apex, owner = triangles.T.ravel(), np.tile(np.arange(m), 3)

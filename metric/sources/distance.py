@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy  # loads scipy.spatial when it is first used
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ..base.arrays import Floats
 from ..base.vectors import norms
@@ -23,7 +23,7 @@ def distance_to_facets(points: Floats, facets: Floats) -> Floats:
     """
     centres = facets.mean(axis=1)
     radius = float(norms(facets - centres[:, None]).max())
-    tree = cKDTree(centres)
+    tree = scipy.spatial.cKDTree(centres)
     best = np.full(len(points), np.inf)
     todo = np.arange(len(points))
     asked = min(FIRST_NEIGHBOURS, len(facets))

@@ -13,7 +13,6 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from ...base.arrays import Bools, Floats, Ints
 from ...base.mesh import MeshLike
@@ -137,6 +136,8 @@ def _on_interfaces(mesh: MeshLike) -> Bools:
 
 def _separated(mesh: MeshLike, touching: Bools) -> tuple[Ints, Ints]:
     """Cells with one point for each side of an interface, and the origins of the new points."""
+    from scipy.sparse.csgraph import connected_components  # slow to import
+
     n, corners = len(mesh.points), mesh.cells.shape[1]
     near = np.flatnonzero(touching[mesh.cells].any(axis=1))
     cells = mesh.cells[near]

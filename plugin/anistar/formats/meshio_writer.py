@@ -1,4 +1,7 @@
-"""Formats that are written through meshio, behind a guard: it prints, and may leave the process."""
+"""Formats that are written through meshio, behind a guard: it prints, and may leave the process.
+
+It is imported when it is needed first, which few files do.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,6 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-import meshio
 import numpy as np
 
 from ..base.errors import FormatError
@@ -22,11 +24,15 @@ _XDMF = (".xdmf", ".xmf")
 
 def is_known(suffix: str) -> bool:
     """Return whether meshio has a format of this suffix."""
+    import meshio
+
     return suffix in meshio.extension_to_filetypes
 
 
 def write(temporary: Path, content: RawMesh, path: Path) -> None:
     """Write through meshio, tags as the integer array `medit:ref`; errors name `path`."""
+    import meshio
+
     refuse_reserved(content, path)
     blocks, options = content.blocks, {}
     if suffix_of(path) in _XDMF:
@@ -52,6 +58,8 @@ def write(temporary: Path, content: RawMesh, path: Path) -> None:
 @contextlib.contextmanager
 def _guarded(path: Path, temporary: Path) -> Iterator[None]:
     """Turn every way in which meshio fails into a `FormatError` that names the file."""
+    import meshio
+
     said = io.StringIO()
     try:
         with (

@@ -14,7 +14,6 @@ from collections.abc import Iterator
 
 import numpy as np
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from .. import _core
 from ..base.arrays import Bools, Floats, Ints, Longs
@@ -87,6 +86,8 @@ def covered_facet(points: Floats, facets: Ints) -> int | None:
 
 def _components(facets: Ints, n_points: int) -> Ints:
     """Label facets connected through vertices (2D) or edges (3D) that have two facets."""
+    from scipy.sparse.csgraph import connected_components  # slow to import
+
     width = facets.shape[1]
     ridges = np.concatenate([np.delete(facets, i, axis=1) for i in range(width)])
     keys = RowKeys(ridges, n_points).encode(ridges)

@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # loads scipy.spatial when it is first used
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from ..base.arrays import AnyArray, Floats
 from .fields import Field
@@ -129,7 +129,7 @@ def _equal_rows(rows: AnyArray, others: AnyArray) -> Numbers | None:
 
 def _nearest_points(points: Floats, others: Floats) -> Numbers:
     """Return the other point nearest to each point."""
-    tree = KDTree(points)
+    tree = scipy.spatial.KDTree(points)
     nearest = np.asarray(tree.query(others)[1], dtype=np.int64)
     next_points = np.asarray(tree.query(points, k=2)[1])
     itself = next_points[:, 0] == np.arange(len(points))

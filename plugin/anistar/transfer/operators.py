@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scipy.sparse.linalg import LinearOperator, aslinearoperator
+from typing import TYPE_CHECKING
 
 from ..objects import AnyMesh, as_mesh
 from .interpolation import Interpolator
@@ -11,6 +11,9 @@ from .projection.coverage import require_covered
 from .projection.intersection import supermesh
 from .projection.l2_projection import Projector
 from .values.nodes import n_nodes
+
+if TYPE_CHECKING:
+    from scipy.sparse.linalg import LinearOperator
 
 LOCATIONS = ("points", "cells", "cell_nodes")
 
@@ -74,6 +77,8 @@ def transfer_operator(
     if order not in (1, 2) or (order == 2 and (on != "cell_nodes" or method != "interpolate")):
         raise ValueError(f"order {order!r} is not supported for {method} on {on}")
     if method == "interpolate":
+        from scipy.sparse.linalg import aslinearoperator  # slow to import
+
         options = TransferOptions(outside=outside)
         count = n_nodes(source.dim, order) if on == "cell_nodes" else 1
         return aslinearoperator(Interpolator(source, target, options).matrix(on, count))

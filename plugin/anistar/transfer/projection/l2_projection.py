@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
-from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
 from ...base.arrays import Bools, Floats, Ints
 from ...meshes.mesh import Mesh
@@ -15,6 +15,9 @@ from ...meshes.topology import cell_volumes
 from .intersection import Supermesh
 from .mass import Mass, mass
 from .symmetric_system import SymmetricSystem
+
+if TYPE_CHECKING:
+    from scipy.sparse.linalg import LinearOperator
 
 # For each region; the system of a row of thin layers takes about one.
 CORRECTION_STEPS = 20
@@ -148,6 +151,8 @@ class Projector:
 
     def operator(self, on: str) -> LinearOperator:
         """Return the projection as a linear operator with its adjoint."""
+        from scipy.sparse.linalg import LinearOperator  # slow to import
+
         mixed, (before, after) = self.overlap.matrix(on), self.functionals(on)
         vectors, amounts = self.corrections(on)
         count = before.shape[0]
@@ -166,6 +171,8 @@ class Projector:
 
     def lumped(self, on: str) -> LinearOperator:
         """Return the low-order part of the bounded method: load over lumped mass."""
+        from scipy.sparse.linalg import aslinearoperator  # slow to import
+
         if on == "cell_nodes":
             raise ValueError(
                 "the low-order operator exists for points and cells, not for cell_nodes"
