@@ -29,6 +29,8 @@ from .transfer import (
     transfer_quadrature,
 )
 
+__version__ = "0.1.0"
+
 __all__ = [
     "AdaptOptions",
     "Adapted",
@@ -55,6 +57,7 @@ __all__ = [
     "Transferred",
     "UnsteadyOptions",
     "Violation",
+    "__version__",
     "adapt",
     "adapt_loop",
     "certify",

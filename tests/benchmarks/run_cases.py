@@ -161,7 +161,7 @@ def main() -> None:
                 table.add_row(*run(case, tool, arguments.complexity, arguments.passes))
     Console().print(table)
     if mmgpy is None:
-        Console().print("mmgpy is not installed: pip install 'anistar[bench]'")
+        Console().print("mmgpy is not installed: make bench installs it")
 
 
 if __name__ == "__main__":

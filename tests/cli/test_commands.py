@@ -255,7 +255,7 @@ def test_doctor_finds_this_installation_sound(capsys):
         if findings[package]["state"] == "ok":
             assert "meshes go there and back" in findings[package]["detail"]
         else:
-            assert "pip install 'anistar[" in findings[package]["detail"]
+            assert "-m pip install " in findings[package]["detail"]
 
 
 def test_doctor_tells_of_an_adapter_that_does_not_work(monkeypatch, capsys):

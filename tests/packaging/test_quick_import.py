@@ -9,7 +9,8 @@ import anistar
 
 SLOW = [
     "meshio", "rich", "matplotlib", "pyvista", "vtkmodules", "skfem",
-    "scipy.spatial", "scipy.optimize", "scipy.linalg", "scipy.sparse.linalg", "scipy.sparse.csgraph",
+    "scipy.spatial", "scipy.optimize", "scipy.linalg", "scipy.sparse.linalg",
+    "scipy.sparse.csgraph",
 ]  # fmt: skip
 
 LOADED = "import sys, anistar; print('\\n'.join(sys.modules))"

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats, Ints
+from ..base.extras import install_command
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
 from ..objects import Content, Form, register
@@ -25,7 +26,7 @@ try:
     import dolfinx.mesh
     from mpi4py import MPI
 except ImportError as error:
-    error.add_note("anistar's dolfinx adapter needs it: pip install 'anistar[dolfinx]'")
+    error.add_note(f"anistar's dolfinx adapter needs it: {install_command('dolfinx')}")
     raise
 
 

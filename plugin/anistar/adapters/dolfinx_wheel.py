@@ -3,9 +3,15 @@
 import contextlib
 import importlib
 
-PETSC_IS_MISSING = (
-    "anistar's PETSc adapter needs petsc4py: pip install 'anistar[dolfinx]' or 'anistar[petsc]'"
-)
+from ..base.extras import install_command
+
+
+def petsc_is_missing() -> str:
+    """Return what to do where there is no petsc4py."""
+    return (
+        f"anistar's PETSc adapter needs petsc4py: {install_command('dolfinx')} brings it compiled, "
+        f"{install_command('petsc')} compiles it"
+    )
 
 
 def make_importable() -> None:

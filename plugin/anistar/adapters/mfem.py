@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats, Ints
+from ..base.extras import install_command
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants
 from ..objects import Content, Form, register
@@ -20,7 +21,7 @@ from ..objects import Content, Form, register
 try:
     from mfem import ser as mfem
 except ImportError as error:
-    error.add_note("anistar's MFEM adapter needs PyMFEM: pip install 'anistar[mfem]'")
+    error.add_note(f"anistar's MFEM adapter needs PyMFEM: {install_command('mfem')}")
     raise
 
 _TRIANGLE, _TETRAHEDRON = 2, 4  # mfem::Element::Type

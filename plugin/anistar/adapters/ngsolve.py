@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import AnyArray, Floats, Ints
+from ..base.extras import install_command
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants
 from ..objects import Content, Form, register
@@ -17,7 +18,7 @@ try:
     from netgen.meshing import Element0D
     from netgen.meshing import Mesh as NetgenMesh
 except ImportError as error:
-    error.add_note("anistar's NGSolve adapter needs it: pip install 'anistar[ngsolve]'")
+    error.add_note(f"anistar's NGSolve adapter needs it: {install_command('ngsolve')}")
     raise
 
 

@@ -24,7 +24,7 @@ def main() -> None:
     try:
         petsc4py = importlib.import_module("petsc4py")
     except ImportError as error:
-        raise SystemExit(f"{error}; {dolfinx_wheel.PETSC_IS_MISSING}") from error
+        raise SystemExit(f"{error}; {dolfinx_wheel.petsc_is_missing()}") from error
     petsc4py.init([*sys.argv, "-dm_adaptor", "anistar"])
     importlib.import_module("anistar.adapters.petsc").register()
     runpy.run_path(sys.argv[0], run_name="__main__")

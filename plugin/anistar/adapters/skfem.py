@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, Ints, Longs
+from ..base.extras import install_command
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
 from ..objects import Content, Form, register
@@ -16,7 +17,7 @@ try:
     from skfem import MeshTet, MeshTri
     from skfem.mesh import Mesh as SkfemMesh
 except ImportError as error:
-    error.add_note("anistar's scikit-fem adapter needs it: pip install 'anistar[skfem]'")
+    error.add_note(f"anistar's scikit-fem adapter needs it: {install_command('skfem')}")
     raise
 
 

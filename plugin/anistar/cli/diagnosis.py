@@ -6,6 +6,7 @@ import importlib
 import importlib.metadata
 import itertools
 import platform
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..adapters import dolfinx_wheel
+from ..base.extras import install_command
 from ..base.report import attributes
 from ..loops.adapt import AdaptOptions, adapt
 from ..meshes.mesh import Mesh
@@ -26,7 +28,7 @@ REQUIRED = ("numpy", "scipy", "meshio", "rich")
 OPTIONAL = {
     "skfem": "skfem",
     "matplotlib": "plot",
-    "pyvista": "plot",
+    "pyvista": "pyvista",
     "vtk": "vtk",
     "petsc4py": "petsc",
     "dolfinx": "dolfinx",
@@ -101,13 +103,20 @@ def _optional(name: str, extra: str) -> Finding:
     try:
         module = importlib.import_module(name)
     except ImportError:
-        return Finding(name, "absent", f"optional: pip install 'anistar[{extra}]'")
+        return Finding(name, "absent", f"optional: {install_command(extra)}")
     except Exception as error:  # a package of another build can fail in any way while it loads
         return Finding(name, "broken", f"{type(error).__name__}: {error}")
     version = str(getattr(module, "__version__", "version not known"))
     if name not in ADAPTERS:
         return Finding(name, "ok", version)
-    return _tried(name, lambda: f"{version}; {_round_trip(name.removesuffix('4py'))}")
+    return _tried(name, lambda: f"{version}; {_round_trip(name.removesuffix('4py'))}{_first(name)}")
+
+
+def _first(name: str) -> str:
+    """Return what a program of its own has to import before a package of dolfinx' wheel."""
+    if name in ("petsc4py", "dolfinx") and "dolfinx_solver" in sys.modules:
+        return "; a program imports dolfinx_solver, or an adapter of anistar, before it"
+    return ""
 
 
 def _round_trip(adapter: str) -> str:

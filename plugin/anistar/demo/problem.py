@@ -16,6 +16,7 @@ import numpy as np
 from scipy.spatial import Delaunay
 
 from ..base.arrays import AnyArray, Bools, Floats, Ints
+from ..base.extras import install_command
 from ..meshes.mesh import Mesh
 from ..meshes.topology import boundary_facets
 
@@ -31,7 +32,7 @@ try:
         solve as solve_linear,
     )
 except ImportError as error:
-    error.add_note("the demo solves with scikit-fem: pip install 'anistar[skfem]'")
+    error.add_note(f"the demo solves with scikit-fem: {install_command('skfem')}")
     raise
 
 from ..adapters.skfem import to_skfem

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
 from ..base.atomic import replaced
+from ..base.extras import install_command
 from ..judging.certificate import Certificate
 from ..meshes.mesh import Mesh
 from ..meshes.topology import unique_edges
@@ -22,7 +23,7 @@ try:
     from matplotlib.path import Path as Outline
     from matplotlib.tri import Triangulation
 except ImportError as error:
-    error.add_note("pictures need matplotlib: pip install 'anistar[plot]'")
+    error.add_note(f"pictures need matplotlib: {install_command('plot')}")
     raise
 
 Box = tuple[float, float, float, float]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
+from ..base.extras import install_command
 from ..meshes.mesh import Mesh
 from ..meshes.topology import boundary_facets
 from .plane import INK, Target
@@ -18,7 +19,7 @@ try:
     from matplotlib.colors import ListedColormap
     from matplotlib.figure import Figure
 except ImportError as error:
-    error.add_note("pictures need matplotlib: pip install 'anistar[plot]'")
+    error.add_note(f"pictures need matplotlib: {install_command('plot')}")
     raise
 
 

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Longs
+from ...base.extras import install_command
 from .. import dolfinx_wheel
 
 dolfinx_wheel.make_importable()
 try:
     from petsc4py import PETSc as PETSc
 except ImportError as error:
-    error.add_note(dolfinx_wheel.PETSC_IS_MISSING)
+    error.add_note(dolfinx_wheel.petsc_is_missing())
     raise
 
 #: Signature of a metric adaptor, `DMGenerateFunctions.adaptmetric`: the DM, the metric, labels of
@@ -117,7 +118,7 @@ def processes(plex: Any) -> Any:
     try:
         return plex.comm.tompi4py()
     except ImportError as error:
-        error.add_note("a DM on several processes needs mpi4py: pip install mpi4py")
+        error.add_note(f"a DM on several processes needs mpi4py: {install_command('parallel')}")
         raise
 
 

@@ -1,9 +1,11 @@
 """VTK: grids to `Mesh` and back, filters for pipelines and ParaView, glyphs of metrics."""
 
+from ...base.extras import install_command
+
 try:
     import vtkmodules  # noqa: F401
 except ImportError as error:
-    error.add_note("anistar's VTK adapter needs it: pip install 'anistar[vtk]'")
+    error.add_note(f"anistar's VTK adapter needs it: {install_command('vtk')}")
     raise
 
 from .filters import vtkAnistarAdapt, vtkAnistarMetric
