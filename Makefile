@@ -1,6 +1,6 @@
 # Every target sets up what it needs first; that takes a moment only when something changed.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint types stubs check-stubs format docs wheel sanitize sanitize-threads fuzz same-bytes bench clean
+.PHONY: help setup demo test lint types stubs check-stubs format docs wheel wheel-test paraview-test sanitize sanitize-threads fuzz same-bytes bench clean
 
 PYTHON := .venv/bin/python
 PYTEST_ARGS ?= -n auto --dist loadfile
@@ -14,7 +14,8 @@ help: ## Show this list
 setup: ## Install what is missing and build the package into .venv
 	@./bootstrap.sh
 
-demo: setup ## Adapt a channel flow and leave pictures, meshes and a report in anistar-demo/
+demo: ## Adapt a channel flow and leave pictures, meshes and a report in anistar-demo/
+	@./bootstrap.sh demo
 	@.venv/bin/anistar demo --force
 
 test: setup ## Run the tests
@@ -54,20 +55,16 @@ docs: ## Build the documentation into docs/_build/html
 	@$(PYTHON) -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
 
-# The shared libraries that the core needs go into the wheel, what only the tests import does not.
-# It is tried where there is nothing but Python: an environment of its own, no compiler on the path
-# and no variable set.
-wheel: ## Build a wheel that needs no compiler into dist/, and try it
+wheel: ## Build wheels that need no compiler, and the source archive, into dist/
 	@./bootstrap.sh wheel
-	@rm -rf build/wheel dist && mkdir -p dist
-	@$(PYTHON) -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps \
-	  --config-settings cmake.define.ANISTAR_FOR_TESTS=OFF --wheel-dir build/wheel .
-	@PATH="$(CURDIR)/.venv/bin:$$PATH" $(PYTHON) -m auditwheel repair --wheel-dir dist build/wheel/*.whl
-	@$(PYTHON) -m venv build/wheel/venv
-	@build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
-	@! ls build/wheel/venv/lib/python*/site-packages/anistar/_core_for_tests* 2>/dev/null
-	@cd build/wheel && env -i PATH=/nowhere venv/bin/anistar doctor
-	@ls dist/*.whl
+	@packaging/build_archives.sh
+
+wheel-test: wheel ## Try each of them as a new user would, in an environment of its own
+	@packaging/try_archives.sh
+
+paraview-test: wheel ## Adapt and render in ParaView itself, with the wheel for its Python
+	@./bootstrap.sh wheel paraview
+	@packaging/try_paraview.sh
 
 # The sanitized builds go beside the ordinary one, which they do without. Python itself is not
 # instrumented: the run-time libraries are loaded first, and leaks, of which the interpreter is full,

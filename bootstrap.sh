@@ -2,18 +2,24 @@
 # Makes .venv with everything that building and testing anistar needs, and installs anistar
 # into it. Run it as often as you like: it does only what changed since the last time.
 #
-#   ./bootstrap.sh            what `make demo` and `make test` need
+#   ./bootstrap.sh demo       what `make demo` needs: no solver but scikit-fem
+#   ./bootstrap.sh            what `make test` needs: every solver that the tests drive
 #   ./bootstrap.sh docs       also what `make docs` needs
 #   ./bootstrap.sh bench      also what `make bench` needs
 #   ./bootstrap.sh wheel      also what `make wheel` needs
+#   ./bootstrap.sh programs   also the browser and the solver that tests run if they are there
+#   ./bootstrap.sh paraview   also what `make paraview-test` needs
 #   ./bootstrap.sh environment  all but anistar itself, of which another build goes elsewhere
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
+source packaging/find_python.sh
 
 readonly VENV=.venv
 readonly STAMPS=$VENV/stamps
-readonly DEBIAN_PACKAGES=(g++ cmake ninja-build libcgal-dev libeigen3-dev libegl1 libgl1
-  libxrender1)
+readonly BUILD_PACKAGES=(g++ cmake ninja-build libcgal-dev libeigen3-dev)
+readonly SOLVER_PACKAGES=(libegl1 libgl1 libxrender1)
+readonly PROGRAMS=(chromium fonts-dejavu-core freefem++)
+readonly PARAVIEW_PACKAGES=(paraview python3.11-dev python3.11-venv xauth xvfb)
 
 say() { printf 'bootstrap: %s\n' "$*" >&2; }
 
@@ -24,9 +30,9 @@ fail() {
 
 # --- Debian packages ---------------------------------------------------------------------
 
-missing_debian_packages() {
+missing_debian_packages() { # missing_debian_packages PACKAGE...
   local package
-  for package in "${DEBIAN_PACKAGES[@]}"; do
+  for package in "$@"; do
     dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2>/dev/null |
       grep -qx installed || printf '%s\n' "$package"
   done
@@ -37,17 +43,17 @@ require_tools() {
   local tool
   for tool in c++ cmake ninja; do
     command -v "$tool" >/dev/null ||
-      fail "$tool is missing; install what Debian calls: ${DEBIAN_PACKAGES[*]}"
+      fail "$tool is missing; install what Debian calls: ${BUILD_PACKAGES[*]}"
   done
 }
 
-install_debian_packages() {
+install_debian_packages() { # install_debian_packages PACKAGE...
   local missing sudo=()
   if ! command -v dpkg-query >/dev/null; then
     require_tools
     return
   fi
-  mapfile -t missing < <(missing_debian_packages)
+  mapfile -t missing < <(missing_debian_packages "$@")
   [ "${#missing[@]}" -gt 0 ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     if ! { command -v sudo >/dev/null && sudo -n true 2>/dev/null; } && [ ! -t 0 ]; then
@@ -59,32 +65,13 @@ install_debian_packages() {
   fi
   say "installing Debian packages: ${missing[*]}"
   "${sudo[@]}" apt-get update -qq
+  "${sudo[@]}" apt-get install --assume-no --no-install-recommends "${missing[@]}" 2>/dev/null |
+    sed -n 's/^Need to get/bootstrap: to download:/p' >&2 || true
   "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
-    --no-install-recommends "${missing[@]}" >&2
+    -o DPkg::Lock::Timeout=600 --no-install-recommends "${missing[@]}" >&2
 }
 
 # --- Python ------------------------------------------------------------------------------
-
-# A name on PATH may be a launcher that fails when it is run, so every candidate is run.
-is_python() { # is_python EXECUTABLE MAJOR.MINOR
-  "$1" -c "
-import sys, venv, ensurepip
-sys.exit('%d.%d' % sys.version_info[:2] != '$2')" >/dev/null 2>&1
-}
-
-find_python() { # find_python MAJOR.MINOR...: the first that runs, in the order given
-  local version candidate
-  for version in "$@"; do
-    for candidate in "python$version" python3 \
-      "$HOME/.pyenv/versions/$version".*/bin/python; do
-      if is_python "$candidate" "$version"; then
-        command -v "$candidate"
-        return
-      fi
-    done
-  done
-  return 1
-}
 
 make_environment() {
   local python
@@ -111,13 +98,19 @@ mark_done() {
   printf '%s\n' "$2" >"$STAMPS/$1"
 }
 
+requirements_digest() { cat requirements/development.txt "requirements/$1.txt" | digest; }
+
+# What a requirements file says of itself, measured by its author.
+downloads() { sed -n 's/^# Downloads about \(.*\)\.$/\1/p' "$1" | head -n 1; }
+
 install_requirements() { # install_requirements NAME
   local file=requirements/$1.txt wanted
-  [ -f "$file" ] || fail "there is no $file; known: development docs bench wheel"
-  wanted=$(digest <"$file")
+  [ -f "$file" ] || fail "there is no $file; known: demo development docs bench wheel"
+  wanted=$(requirements_digest "$1")
   is_done "$1" "$wanted" && return
-  say "installing $file"
-  "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check -r "$file"
+  say "installing $file (downloads about $(downloads "$file"), less what pip has kept)"
+  "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check \
+    --constraint requirements/development.txt -r "$file"
   if [ "$1" = development ] && is_python "$VENV/bin/python" 3.11; then
     say "Python 3.11: PETSc and dolfinx are left out, their wheels need Python 3.12"
   fi
@@ -134,32 +127,77 @@ source_digest() {
   } | digest
 }
 
+# How far the compiler is: in one line on a terminal, else in ten.
+show_steps() {
+  local step count total shown=0 end='\n' every=10
+  [ -t 2 ] && end='\r' every=100
+  while IFS= read -r step; do
+    [[ $step =~ ^\ *\[([0-9]+)/([0-9]+)\] ]] || continue
+    count=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
+    if [ $((count * every / total)) -gt "$shown" ] || [ "$count" -eq "$total" ]; then
+      shown=$((count * every / total))
+      printf "bootstrap: built %d of %d$end" "$count" "$total" >&2
+    fi
+  done
+  [ ! -t 2 ] || printf '\n' >&2
+}
+
 # A plain install, not an editable one: type checkers and documentation builds cannot follow the
 # import hook of an editable one, and the tests should see what a user gets. The build folder
 # is kept, so that only the C++ files that changed are compiled again.
-install_anistar() {
-  local wanted
+install_anistar() { # install_anistar ON|OFF: with or without the module that only tests import
+  local wanted log=build/install.log
   wanted=$(source_digest)
-  is_done anistar "$wanted" && return
-  say "building and installing anistar"
-  "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check \
+  is_done anistar "$wanted ON" && return
+  is_done anistar "$wanted $1" && return
+  say "building and installing anistar; the compiler's words go to $log"
+  mkdir -p build
+  "$VENV/bin/python" -m pip install --verbose --disable-pip-version-check \
     --no-build-isolation --no-deps --force-reinstall \
-    --config-settings cmake.define.ANISTAR_FOR_TESTS=ON .
-  mark_done anistar "$wanted"
+    --config-settings cmake.define.ANISTAR_FOR_TESTS="$1" . 2>&1 | tee "$log" | show_steps || {
+    tail -n 40 "$log" >&2
+    fail "the build failed; all it said is in $log"
+  }
+  mark_done anistar "$wanted $1"
+}
+
+# Python 3.11 has no stable ABI that serves: its wheel takes the headers of that very version.
+install_python_for_old_wheel() {
+  local python
+  if python=$(find_python 3.11) && has_headers "$python"; then
+    return
+  fi
+  if apt-cache show python3.11-dev >/dev/null 2>&1; then
+    install_debian_packages python3.11-dev python3.11-venv
+  fi
 }
 
 main() {
   local extra
-  install_debian_packages
+  install_debian_packages "${BUILD_PACKAGES[@]}"
   make_environment
+  if [ "$*" = demo ]; then
+    is_done development "$(requirements_digest development)" || install_requirements demo
+    install_anistar OFF
+    return
+  fi
+  install_debian_packages "${SOLVER_PACKAGES[@]}"
   install_requirements development
   if [ "$*" = environment ]; then
     return
   fi
   for extra in "$@"; do
-    install_requirements "$extra"
+    case $extra in
+      programs) install_debian_packages "${PROGRAMS[@]}" ;;
+      paraview) install_debian_packages "${PARAVIEW_PACKAGES[@]}" ;;
+      wheel)
+        install_python_for_old_wheel
+        install_requirements wheel
+        ;;
+      *) install_requirements "$extra" ;;
+    esac
   done
-  install_anistar
+  install_anistar ON
 }
 
 main "$@"

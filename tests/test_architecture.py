@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "plugin" / "anistar"
 CORE = ROOT / "plugin" / "core"
 
-FOLDERS = {"docs", "metric", "plugin", "requirements", "solver_examples", "tests"}
+FOLDERS = {"docs", "metric", "packaging", "plugin", "requirements", "solver_examples", "tests"}
 # A folder of the core includes itself and those before it; the bindings include all.
 CORE_FOLDERS = [
     "base",
