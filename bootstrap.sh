@@ -19,7 +19,7 @@ readonly STAMPS=$VENV/stamps
 readonly BUILD_PACKAGES=(g++ cmake ninja-build libcgal-dev libeigen3-dev)
 readonly SOLVER_PACKAGES=(libegl1 libgl1 libxrender1)
 readonly PROGRAMS=(chromium fonts-dejavu-core freefem++)
-readonly PARAVIEW_PACKAGES=(paraview python3.11-dev python3.11-venv xauth xvfb)
+readonly PARAVIEW_PACKAGES=(paraview python3-paraview xvfb xauth libgl1-mesa-dri)
 
 say() { printf 'bootstrap: %s\n' "$*" >&2; }
 

@@ -231,6 +231,7 @@ def test_the_paraview_plugin_offers_both_filters_with_properties(make):
     plugin = runpy.run_path(str(PLUGIN))
     mesh = make(5)
     for name in ("AnistarAdapt", "AnistarMetric"):
+        assert "SetTargetComplexity" in vars(plugin[name])  # ParaView looks in no base
         filter_ = plugin[name]()
         filter_.SetInputDataObject(vtk.to_vtk(mesh, front(mesh)))
         filter_.SetTargetComplexity(200.0)
@@ -239,6 +240,7 @@ def test_the_paraview_plugin_offers_both_filters_with_properties(make):
         filter_.SetLargestAnisotropy(10.0)
         filter_.SetGradationFactor(1.5)
         filter_.SetNorm(2.0)
+        filter_.SetPointArrays(None)
         filter_.SetPointArrays("u")
         filter_.Update()
         new, found = vtk.from_vtk(filter_.GetOutputDataObject(0))
@@ -262,7 +264,7 @@ def test_the_script_for_paraview_adapts_a_file(paraview, monkeypatch, tmp_path):
     """In VTK's pipeline, through the few calls that the script makes."""
     simple = types.ModuleType("paraview.simple")
 
-    def load(path, remote, ns):
+    def load(path, remote):
         plugin = runpy.run_path(path)
         simple.AnistarAdapt = lambda Input: FilterOfParaView(plugin["AnistarAdapt"](), Input)
 

@@ -46,15 +46,24 @@ class _Properties:
         self.set_options(gradation_factor=value or None)
 
     @smproperty.stringvector(name="PointArrays", default_values="")
-    def SetPointArrays(self, names: str) -> None:
-        self.set_fields(*names.split())
+    def SetPointArrays(self, names: str | None) -> None:  # ParaView's empty string is None
+        self.set_fields(*(names or "").split())
+
+
+def _with_properties(filter_: type) -> type:
+    """Return the filter with the properties; ParaView looks in the class itself, in no base."""
+    for name, method in vars(_Properties).items():
+        if name.startswith("Set"):
+            setattr(filter_, name, method)
+    return filter_
 
 
 @smproxy.filter(label="Anistar Metric")
 @smproperty.input(name="Input")
 @smdomain.datatype(dataTypes=["vtkUnstructuredGrid"], composite_data_supported=False)
 @smhint.xml('<ShowInMenu category="anistar" />')
-class AnistarMetric(_Properties, vtkAnistarMetric):
+@_with_properties
+class AnistarMetric(vtkAnistarMetric):
     """Add the metric that point arrays ask for."""
 
 
@@ -62,5 +71,6 @@ class AnistarMetric(_Properties, vtkAnistarMetric):
 @smproperty.input(name="Input")
 @smdomain.datatype(dataTypes=["vtkUnstructuredGrid"], composite_data_supported=False)
 @smhint.xml('<ShowInMenu category="anistar" />')
-class AnistarAdapt(_Properties, vtkAnistarAdapt):
+@_with_properties
+class AnistarAdapt(vtkAnistarAdapt):
     """Adapt the mesh to its point arrays, or to the array `metric` where there is one."""

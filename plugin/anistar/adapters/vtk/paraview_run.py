@@ -20,7 +20,7 @@ PLUGIN = Path(__file__).with_name("paraview_plugin.py")
 
 def main(given: str, wanted: str, complexity: str, *arrays: str) -> None:
     """Load the plugin, read, adapt, and save the result."""
-    simple.LoadPlugin(str(PLUGIN), remote=False, ns=globals())
+    simple.LoadPlugin(str(PLUGIN), remote=False)
     adapted = simple.AnistarAdapt(Input=simple.OpenDataFile(given))
     adapted.TargetComplexity = float(complexity)
     adapted.PointArrays = " ".join(arrays)
