@@ -43,10 +43,10 @@ def normalised(
     p: float = 2.0,
     h_max: Bound = None,
 ) -> Floats:
-    """Scale ``|H|`` to the metric that is optimal in the Lp norm [1]_.
+    """Scale ``|H|`` to the metric that is optimal in the Lp norm.
 
-    ``M = C^(2/d) (int det|H|^(p/(2p+d)))^(-2/d) det|H|^(-1/(2p+d)) |H|``. A change of the
-    unit of the field does not change it. For infinite p the exponents are their limits:
+    ``M = C^(2/d) (int det|H|^(p/(2p+d)))^(-2/d) det|H|^(-1/(2p+d)) |H|``, as in [1]_. A change
+    of the unit of the field does not change it. For infinite p the exponents are their limits:
     ``M = C^(2/d) (int det|H|^(1/2))^(-2/d) |H|``, which equidistributes the error.
 
     Parameters
@@ -109,9 +109,9 @@ def normalised_space_time(
     p: float = 2.0,
     h_max: Bound = None,
 ) -> list[Floats]:
-    """Distribute one space-time complexity over the metrics of several instants [1]_, [2]_.
+    """Distribute one space-time complexity over the metrics of several instants.
 
-    With n_i time steps taken on the mesh of instant i, the space-time complexity is
+    The formulas are those of [1]_ and [2]_. With n_i time steps taken on the mesh of instant i, the space-time complexity is
     ``C = sum_i n_i int sqrt(det M_i)``, and the metrics of least error in space and time are::
 
         M_i = C^(2/d) (sum_j K_j)^(-2/d) n_i^(-2/(2p+d)) det|H_i|^(-1/(2p+d)) |H_i|

@@ -14,7 +14,9 @@ from ..tensors.checks import check_tensors
 
 
 def weighted_hessian(hessians: ArrayLike, weights: ArrayLike) -> Floats:
-    """Sum of absolute Hessians, each with the weight that the adjoint gives it [1]_.
+    """Sum of absolute Hessians, each with the weight that the adjoint gives it.
+
+    This is the tensor that takes the place of ``|H|`` in [1]_.
 
     Parameters
     ----------
@@ -64,7 +66,9 @@ def weighted_hessian(hessians: ArrayLike, weights: ArrayLike) -> Floats:
 
 
 def flux_hessian(mesh: AnyMesh, fluxes: ArrayLike, adjoint_gradient: ArrayLike) -> Floats:
-    """Weighted Hessian of a conservation law: ``sum_ki |d_i z_k| |H(F_ki)|`` [1]_.
+    """Weighted Hessian of a conservation law: ``sum_ki |d_i z_k| |H(F_ki)|``.
+
+    The derivation is in [1]_.
 
     Parameters
     ----------
@@ -103,11 +107,11 @@ def flux_hessian(mesh: AnyMesh, fluxes: ArrayLike, adjoint_gradient: ArrayLike) 
 
 
 def diffusion_hessian(mesh: AnyMesh, u: ArrayLike, adjoint: ArrayLike) -> Floats:
-    """Weighted Hessian of a diffusion problem: ``sum_k r(H(z_k)) |H(u_k)|`` [1]_.
+    """Weighted Hessian of a diffusion problem: ``sum_k r(H(z_k)) |H(u_k)|``.
 
-    The error of Galerkin's method in the output is the product of the gradients of two errors,
-    of the solution and of the adjoint state. Integrated by parts, the interpolation error of u
-    is weighted by second derivatives of z; r is the largest of their absolute values.
+    After [1]_: the error of Galerkin's method in the output is the product of the gradients of
+    two errors, of the solution and of the adjoint state. Integrated by parts, the interpolation
+    error of u is weighted by second derivatives of z; r is the largest of their absolute values.
 
     Parameters
     ----------
