@@ -1,7 +1,9 @@
 """Configuration of the documentation."""
 
 import importlib.metadata
+import importlib.resources
 import logging
+import re
 import sys
 from pathlib import Path
 
@@ -56,3 +58,23 @@ bibtex_reference_style = "author_year"
 
 html_theme = "furo"
 html_title = "anistar"
+
+# Formulas are set without a network: the package brings MathJax, and of its files the one that
+# draws them needs no fonts, which browsers refuse to load for a page opened as a file.
+_MATHJAX = importlib.resources.files("sphinx-mathjax-offline") / "static" / "mathjax"
+html_static_path = ["_static", str(_MATHJAX / "tex-svg.js")]
+html_css_files = ["wide-enough.css"]
+mathjax_path = "tex-svg.js"
+
+
+def _lead_back(app, page_name, template_name, context, doctree):
+    """Lead from the source of a name that is documented where it is exported to its page."""
+    if page_name.startswith("_modules/"):
+        context["body"] = re.sub(
+            r"(generated/([\w.]+)\.html#)(?!\2)[\w.]+", r"\1\2", context["body"]
+        )
+
+
+def setup(app):
+    """Connect what this configuration adds to the building of pages."""
+    app.connect("html-page-context", _lead_back)
