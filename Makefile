@@ -1,6 +1,6 @@
 # Every target sets up what it needs first; that takes a moment only when something changed.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint types stubs check-stubs format docs wheel wheel-test paraview-test sanitize sanitize-threads fuzz same-bytes bench clean
+.PHONY: help setup demo test lint types stubs check-stubs format docs check-pages wheel wheel-test paraview-test sanitize sanitize-threads fuzz same-bytes bench clean
 
 PYTHON := .venv/bin/python
 PYTEST_ARGS ?= -n auto --dist loadfile
@@ -54,6 +54,9 @@ docs: ## Build the documentation into docs/_build/html
 	@./bootstrap.sh docs
 	@$(PYTHON) -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
+
+check-pages: docs ## Open every built page in a headless Chromium: nothing overflows, is broken or raw
+	@$(PYTHON) -m pytest -q -m browser tests/browser
 
 wheel: ## Build wheels that need no compiler, and the source archive, into dist/
 	@./bootstrap.sh wheel
