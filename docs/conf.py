@@ -44,6 +44,7 @@ sphinx_gallery_conf = {
     "filename_pattern": gallery.runnable(),
     "reset_argv": "gallery.small_arguments",
     "reset_modules": ("gallery.with_anistar_in_petsc",),
+    "thumbnail_size": gallery.THUMBNAIL,
     "image_scrapers": ("gallery.drawn_picture",),
     "subsection_order": [f"../solver_examples/{folder}" for folder in gallery.PACKAGES],
     "download_all_examples": False,
@@ -78,3 +79,4 @@ def _lead_back(app, page_name, template_name, context, doctree):
 def setup(app):
     """Connect what this configuration adds to the building of pages."""
     app.connect("html-page-context", _lead_back)
+    app.connect("builder-inited", gallery.draw_thumbnails, priority=900)  # when it has been run

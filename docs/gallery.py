@@ -6,6 +6,8 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from PIL import Image, ImageFilter, ImageOps
+
 from anistar.adapters import dolfinx_wheel
 
 #: Arguments that make the examples small enough for every build of the documentation.
@@ -32,6 +34,9 @@ PACKAGES = {
     "petsc": "petsc4py",
     "transfer": "matplotlib",
 }
+
+#: Width and height of the thumbnails in pixels.
+THUMBNAIL = (400, 280)
 
 # What the examples write; it is gone when the documentation is built.
 _FOLDER = tempfile.TemporaryDirectory(prefix="anistar-gallery-")
@@ -75,6 +80,23 @@ def drawn_picture(block, block_vars, gallery_conf):
     shown = next(block_vars["image_path_iterator"])
     shutil.move(drawn, shown)
     return figure_rst([shown], gallery_conf["src_dir"])
+
+
+def draw_thumbnails(app):
+    """Draw the thumbnails anew from their pictures, with lines that are still seen when small."""
+    for thumbnail in Path(app.srcdir, "auto_examples").rglob("images/thumb/sphx_glr_*_thumb.png"):
+        name = thumbnail.name.replace("_thumb.png", "_001.png")
+        picture = thumbnail.parents[1] / name
+        if picture.exists():
+            _thumbnail_of(picture).save(thumbnail)
+
+
+def _thumbnail_of(picture: Path) -> Image.Image:
+    with Image.open(picture) as drawn:
+        whole = drawn.convert("RGB")
+    # The darkest of the pixels that fall into one: a mean of thin lines on white is nearly white.
+    reach = max(whole.width // THUMBNAIL[0], whole.height // THUMBNAIL[1]) // 2 * 2 + 1
+    return ImageOps.pad(whole.filter(ImageFilter.MinFilter(reach)), THUMBNAIL, color="white")
 
 
 def with_anistar_in_petsc(gallery_conf, file_name):

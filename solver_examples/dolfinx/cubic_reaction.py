@@ -1,6 +1,6 @@
 """
-FEniCSx: a reaction front
-=========================
+A reaction front by Newton's method
+===================================
 
 A nonlinear reaction with a sharp front, solved with dolfinx on meshes that adapt to it.
 ``-eps^2 Laplace(u) + u^3 = f`` on the unit square or cube, by Newton's method. With ``f = u`` the

@@ -1,6 +1,6 @@
 """
-MFEM: boundary layers
-=====================
+Boundary layers along all sides
+===============================
 
 Boundary layers along the sides of a square or a cube, solved with PyMFEM on meshes that adapt to
 them. ``-eps Laplace(u) + u = 0``; the sum of ``exp(-x_i / sqrt(eps))`` over the coordinates is

@@ -1,6 +1,6 @@
 """
-NGSolve: a plate with a hole
-============================
+Stress around a hole in a plate
+===============================
 
 A plate with a small hole under tension, solved with NGSolve on meshes that adapt to it. Linear
 elasticity in plane strain, in two dimensions or, for a thick plate, in three. The stress is three

@@ -1,6 +1,6 @@
 """
-PETSc: a reaction front
-=======================
+A round front on a DMPlex
+=========================
 
 A reaction front solved with petsc4py alone, on a DMPlex that adapts to it.
 ``-eps Laplace(u) + u = f`` on the unit square or cube, P1 elements, with a front along a circle or

@@ -1,6 +1,6 @@
 """
-scikit-fem: heat in a channel
-=============================
+Heat carried past a step and an obstacle
+========================================
 
 Heat carried past a step and an obstacle, solved with scikit-fem on meshes that adapt to it.
 ``-eps Laplace(u) + b . grad(u) = 0`` by P1 elements, stabilised along the wind (SUPG).

@@ -1,6 +1,6 @@
 """
-scikit-fem: a front that moves
-==============================
+A front that moves, on meshes that follow it
+============================================
 
 A front that crosses a square, solved with scikit-fem on meshes that follow it. Burgers' equation
 ``du/dt + u (n . grad u) = nu Laplace(u)`` along a direction n. A wave of fixed shape that travels

@@ -1,6 +1,6 @@
 """
-scikit-fem: outflow layers in 3D
-================================
+Outflow layers in the corner of a cube
+======================================
 
 A wind that blows into a corner of a cube, solved with scikit-fem on tetrahedra that adapt to the
 layers. ``-eps Laplace(u) + b . grad(u) = f`` with ``b = (1, 1, 1)`` by P1 elements, stabilised

@@ -1,6 +1,6 @@
 """
-scikit-fem: a known layer
-=========================
+A circular layer whose error is known
+=====================================
 
 Poisson's equation on the unit square with a known circular layer: error against unknowns.
 ``-Laplace(u) = f`` with ``u = tanh(20 (x^2 + y^2 - 1/2))`` given on the boundary.

@@ -1,6 +1,6 @@
 """
-Transfer: a rotating cone
-=========================
+Fifty transfers of a rotating cone
+==================================
 
 A cone that rotates: fifty transfers between adapted meshes, by all three methods. The mesh turns
 rigidly with the cone, which is the exact solution of the rotation, and the field is then
