@@ -17,7 +17,7 @@ source packaging/find_python.sh
 readonly VENV=.venv
 readonly STAMPS=$VENV/stamps
 readonly BUILD_PACKAGES=(g++ cmake ninja-build libcgal-dev libeigen3-dev)
-readonly SOLVER_PACKAGES=(libegl1 libgl1 libxrender1)
+readonly SOLVER_PACKAGES=(libegl1 libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 libxrender1)
 readonly PROGRAMS=(chromium fonts-dejavu-core freefem++)
 readonly PARAVIEW_PACKAGES=(paraview python3-paraview xvfb xauth libgl1-mesa-dri)
 

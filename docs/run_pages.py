@@ -18,8 +18,13 @@ from pathlib import Path
 
 from PIL import Image
 
-COLOURS, PIXELS = 64, 800
+COLOURS, PIXELS = 128, 800
 MARK = "\x1e"
+# What Python prints; libraries in C have words of their own, which go to the process's output.
+RUN = (
+    "import runpy, sys; sys.stdout = open('printed.txt', 'w'); "
+    "runpy.run_path('script.py'); sys.stdout.close()"
+)
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n```text\n(.*?)^```\n)?", re.MULTILINE | re.DOTALL)
 
 
@@ -37,10 +42,9 @@ def printed(page: Path, folder: Path) -> list[str]:
         If the script fails; the message is what it left on stderr.
     """
     codes = [block[1] for block in BLOCK.finditer(page.read_text())]
-    script = folder / "script.py"
-    script.write_text(f"\nprint({MARK!r}, end='')\n".join(codes))
+    (folder / "script.py").write_text(f"\nprint({MARK!r}, end='')\n".join(codes))
     done = subprocess.run(
-        [sys.executable, "-W", "error", script.name],
+        [sys.executable, "-W", "error", "-c", RUN],
         cwd=folder,
         env={**os.environ, "OMP_NUM_THREADS": "1"},
         capture_output=True,
@@ -50,7 +54,7 @@ def printed(page: Path, folder: Path) -> list[str]:
     )
     if done.returncode != 0:
         raise RuntimeError(f"{page}: {done.stderr}")
-    return done.stdout.split(MARK)
+    return (folder / "printed.txt").read_text().split(MARK)
 
 
 def filled(text: str, outputs: list[str]) -> str:
