@@ -1,6 +1,6 @@
 # Every target sets up what it needs first; that takes a moment only when something changed.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint types stubs check-stubs format docs check-pages wheel wheel-test paraview-test sanitize sanitize-threads fuzz same-bytes bench clean
+.PHONY: help setup demo test lint types stubs check-stubs format docs check-pages wheel wheel-test paraview-test sanitize sanitize-threads fuzz same-bytes bench compare clean
 
 PYTHON := .venv/bin/python
 PYTEST_ARGS ?= -n auto --dist loadfile
@@ -104,6 +104,11 @@ same-bytes: setup ## Compare the bytes of all results between the code paths for
 bench: ## Measure against other programs and print a table
 	@./bootstrap.sh bench
 	@$(PYTHON) tests/benchmarks/run_cases.py
+
+compare: ## Compare with what others do and publish, and write the tables of that page anew
+	@./bootstrap.sh bench
+	@OMP_NUM_THREADS=1 PYTHONPATH=tests/benchmarks $(PYTHON) \
+	  tests/benchmarks/compared/write_tables.py docs/tables
 
 clean: ## Remove everything that these commands made
 	@rm -rf .venv build dist docs/_build docs/api/generated docs/auto_examples .pytest_cache .mypy_cache .ruff_cache .hypothesis

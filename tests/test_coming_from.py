@@ -19,8 +19,15 @@ ROWS = [
     for row in PAGE.splitlines()
     if row.startswith("| ") and not re.match(r"\|[-| ]+\|$", row)
 ]
-SPANS = sorted({span for row in ROWS for cell in row[1:2] for span in re.findall("`([^`]+)`", cell)})
-FLAGS = sorted({span for row in ROWS for cell in row[2:] for span in re.findall("`([^`]+)`", cell)})
+
+
+def spans(columns):
+    """Return the pieces of code in some columns of all tables."""
+    cells = [cell for row in ROWS for cell in row[columns]]
+    return sorted({span for cell in cells for span in re.findall("`([^`]+)`", cell)})
+
+
+SPANS, FLAGS = spans(slice(1, 2)), spans(slice(2, None))
 OPTIONS = (
     anistar.AdaptOptions,
     anistar.LoopOptions,

@@ -111,8 +111,9 @@ def normalised_space_time(
 ) -> list[Floats]:
     """Distribute one space-time complexity over the metrics of several instants.
 
-    The formulas are those of [1]_ and [2]_. With n_i time steps taken on the mesh of instant i, the space-time complexity is
-    ``C = sum_i n_i int sqrt(det M_i)``, and the metrics of least error in space and time are::
+    With n_i time steps taken on the mesh of instant i, the space-time complexity is
+    ``C = sum_i n_i int sqrt(det M_i)``, and the metrics of least error in space and time are, by
+    [1]_ and [2]_::
 
         M_i = C^(2/d) (sum_j K_j)^(-2/d) n_i^(-2/(2p+d)) det|H_i|^(-1/(2p+d)) |H_i|
         K_j = n_j^(2p/(2p+d)) int det|H_j|^(p/(2p+d))

@@ -109,9 +109,9 @@ def flux_hessian(mesh: AnyMesh, fluxes: ArrayLike, adjoint_gradient: ArrayLike) 
 def diffusion_hessian(mesh: AnyMesh, u: ArrayLike, adjoint: ArrayLike) -> Floats:
     """Weighted Hessian of a diffusion problem: ``sum_k r(H(z_k)) |H(u_k)|``.
 
-    After [1]_: the error of Galerkin's method in the output is the product of the gradients of
-    two errors, of the solution and of the adjoint state. Integrated by parts, the interpolation
-    error of u is weighted by second derivatives of z; r is the largest of their absolute values.
+    The error of Galerkin's method in the output is the product of the gradients of two errors,
+    of the solution and of the adjoint state. Integrated by parts, the interpolation error of u
+    is weighted by second derivatives of z; r is the largest of their absolute values [1]_.
 
     Parameters
     ----------
