@@ -60,9 +60,7 @@ def test_without_pip_the_command_goes_through_what_is_there(monkeypatch):
     monkeypatch.setattr(extras.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(sys, "executable", "/my env/python")
     monkeypatch.setattr(extras.shutil, "which", lambda name: "/bin/uv")
-    assert install_command("skfem") == (
-        "uv pip install --python '/my env/python' 'scikit-fem>=11'"
-    )
+    assert install_command("skfem") == ("uv pip install --python '/my env/python' 'scikit-fem>=11'")
     monkeypatch.setattr(extras.shutil, "which", lambda name: None)
     assert install_command("skfem") == (
         "'/my env/python' -m ensurepip && '/my env/python' -m pip install 'scikit-fem>=11'"
