@@ -2,6 +2,7 @@
 
 import re
 
+import pyvista
 from documents import ROOT, code_blocks, run_script
 
 import anistar
@@ -9,13 +10,23 @@ import anistar
 README = (ROOT / "README.md").read_text()
 
 
-def test_the_first_python_block_of_the_readme_has_twelve_lines():
-    code, _ = code_blocks("README.md", "python")
-    assert len([line for line in code.splitlines() if line.strip()]) == 12
+def test_the_line_on_a_grid_runs_and_writes_a_valid_mesh(tmp_path):
+    code, _, _ = code_blocks("README.md", "python")
+    printed = run_script(tmp_path, code)
+    surface = pyvista.read(tmp_path / "front.vtp")
+    assert anistar.validate(surface) == []
+    assert "u" in surface.point_data
+    assert printed.startswith(f"{surface.n_points} ")
+    assert "certified" in printed
 
 
-def test_the_python_block_of_the_readme_runs_and_writes_a_valid_mesh(tmp_path):
-    code, _ = code_blocks("README.md", "python")
+def test_the_loop_of_the_readme_has_eleven_lines():
+    _, code, _ = code_blocks("README.md", "python")
+    assert len([line for line in code.splitlines() if line.strip()]) == 11
+
+
+def test_the_loop_of_the_readme_runs_and_writes_a_valid_mesh(tmp_path):
+    _, code, _ = code_blocks("README.md", "python")
     printed = run_script(tmp_path, code)
     mesh, fields = anistar.read(tmp_path / "layers.vtu")
     assert anistar.validate(mesh) == []
@@ -25,7 +36,7 @@ def test_the_python_block_of_the_readme_runs_and_writes_a_valid_mesh(tmp_path):
 
 
 def test_the_block_in_three_dimensions_runs_and_writes_a_valid_mesh(tmp_path):
-    _, code = code_blocks("README.md", "python")
+    *_, code = code_blocks("README.md", "python")
     printed = run_script(tmp_path, code)
     mesh, fields = anistar.read(tmp_path / "front.vtu")
     assert anistar.validate(mesh) == []

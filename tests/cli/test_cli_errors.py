@@ -80,7 +80,7 @@ CASES = {
     ),
     "no field": (
         "adapt bare.vtu --target-complexity 9 -o o.vtu",
-        "no scalar or vector field at the points",
+        "no scalar or vector field on points or cells",
     ),
     "nan in a field": (
         "adapt nan.vtu --target-complexity 9 -o o.vtu",
