@@ -1,17 +1,14 @@
-"""Tables, progress and JSON on the terminal."""
+"""Tables and JSON on the terminal."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from rich import box
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from ..base.report import to_json
@@ -92,24 +89,3 @@ def show_remeshed(
             reason = report.consistency["stop_reason"]
         say(f"not converged: the mesher stopped at {reason}, the mesh is valid")
     say(verdict)
-
-
-@contextmanager
-def progress_bar(total: int | None, *, is_quiet: bool = False) -> Iterator[Any]:
-    """Give a callable ``advance(what)`` that moves a progress bar on stderr."""
-    bar = Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        console=Console(stderr=True),
-        transient=True,
-        disable=is_quiet or not sys.stderr.isatty(),
-    )
-    with bar:
-        task = bar.add_task("starting", total=total)
-
-        def advance(what: str) -> None:
-            bar.update(task, advance=1, description=what)
-
-        yield advance

@@ -11,6 +11,8 @@ from typing import NoReturn
 
 from .. import __version__
 from ..base.errors import MeshingError
+from ..base.progress import quiet
+from ..metric.pipeline.aliases import advice
 from .commands import (
     adapt,
     check,
@@ -67,8 +69,11 @@ def parser() -> argparse.ArgumentParser:
         )
         module.add_arguments(command)
         command.add_argument("--json", action="store_true", help="print the report as JSON")
+        command.add_argument(
+            "--quiet", action="store_true", help="show no progress and tell no forecast"
+        )
         command.add_argument("--debug", action="store_true", help="show the traceback of an error")
-        command.set_defaults(run=module.run)
+        command.set_defaults(run=module.run, command_parser=command)
     return top
 
 
@@ -88,13 +93,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     open_closed_streams()
     words = canonical_flags(sys.argv[1:] if argv is None else argv)
     try:
-        arguments = parser().parse_args(words)
+        arguments = _parsed(words)
     except SystemExit as stop:
         with suppress(RuntimeError), readers_may_leave():
             sys.stdout.flush()  # what --help has printed
         return int(stop.code or 0)
     try:
-        return int(arguments.run(arguments))
+        with quiet(arguments.quiet or arguments.json):
+            return int(arguments.run(arguments))
     except KeyboardInterrupt:
         complain(f"anistar {arguments.command}: interrupted")
         return FAILED
@@ -103,6 +109,18 @@ def main(argv: Sequence[str] | None = None) -> int:
             traceback.print_exc()
         complain(f"anistar {arguments.command}: error: {one_line(error)}")
         return exit_code(error)
+
+
+def _parsed(words: Sequence[str]) -> argparse.Namespace:
+    """Return the arguments; the command whose they are says which of them it does not know."""
+    arguments, unknown = parser().parse_known_args(words)
+    if unknown:
+        command = arguments.command_parser
+        flag = next((word for word in unknown if word.startswith("-")), None)
+        known = [name for name in command._option_string_actions if name.startswith("--")]
+        hint = f": {advice(flag.partition('=')[0], known)}" if flag is not None else ""
+        command.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
+    return arguments
 
 
 def one_line(error: BaseException) -> str:

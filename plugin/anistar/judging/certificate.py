@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import Bools, Floats
 from ..base.core_errors import meshing_errors
+from ..base.progress import task
 from ..base.report import as_builtin
 from ..meshes.mesh import Mesh
 from ..metric import check_metric
@@ -285,7 +286,8 @@ def certify(
     judged = _surface_mesh(mesh, M, Skin(shape=shape, ridge_angle=ridge_angle))
     proof = kept_proof(mesh, judged)
     if proof is None:
-        proof = Proof(judged.mesh.delaunay(threads), judged.delaunay(threads))
+        with task("certify"):
+            proof = Proof(judged.mesh.delaunay(threads), judged.delaunay(threads))
     return certificate_of(judged, proof, threads=threads)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
@@ -13,6 +13,7 @@ from ..base.arguments import require
 from ..base.arrays import Floats
 from ..base.errors import MeshingError
 from ..base.option_names import canonical
+from ..base.progress import task
 from ..base.report import attributes
 from ..base.telling import tell, telling_once
 from ..judging.certificate import certify_and_keep, share_of
@@ -23,6 +24,7 @@ from ..metric.base.by_name import by_name
 from ..metric.base.given import AnyFields, given_fields
 from ..objects import AnyMesh, as_mesh, made, opened
 from ..remeshing.demand import check_targets
+from ..remeshing.forecast import Forecast, forecast, learn
 from ..remeshing.options import RemeshOptions
 from ..remeshing.project import Project
 from ..remeshing.remesh import Remeshed, remesh
@@ -159,6 +161,8 @@ class AdaptReport:
         The fields that made the metric.
     metric : Ledger
         Complexity after every stage of the metric.
+    forecast : Forecast
+        What the mesh was expected to take, before it was made.
     remesh : RemeshReport
         What the mesher did.
     transfer : TransferReport
@@ -179,6 +183,7 @@ class AdaptReport:
 
     metric_fields: tuple[str, ...]
     metric: Ledger
+    forecast: Forecast
     remesh: RemeshReport
     transfer: TransferReport
     corrections: int
@@ -288,8 +293,13 @@ def adapt_to(
     wanted: Wanted | None = None,
     geometry: Mesh | None = None,
     project: Project | None = None,
+    foretell: Callable[[Wanted, Forecast], object] | None = None,
 ) -> Adapted:
-    """Adapt as `adapt` does; `wanted` is what `metric_for` returned, if it is known already."""
+    """Adapt as `adapt` does.
+
+    `wanted` is what `metric_for` returned, if it is known already; `foretell` is called before the
+    mesh is made.
+    """
     started = time.perf_counter()
     checked = as_fields(mesh, fields)
     names = metric_field_names(checked, options.metric_fields)
@@ -297,14 +307,30 @@ def adapt_to(
         target = options.metric.complexity_for(mesh.dim)
         check_targets(mesh, options.metric, [target], options.remesh)
     chosen = {name: checked[name] for name in names}
-    ledger, done, corrections = _to_count(mesh, chosen, options, wanted, geometry, project)
-    if ledger.is_featureless:
-        tell([f"no second derivative in {', '.join(names)}: the mesh is uniform"])
-    carried = transfer(mesh, fields, done.mesh, options.transfer)
-    stars = _judged(done, options.remesh)
+    with task("adapt") as line:
+        if wanted is None:
+            line.enter("metric")
+            wanted = Wanted(*from_fields(mesh, chosen, options.metric))
+        expected = forecast(wanted.ledger.estimate, mesh.dim, options.remesh)
+        if foretell is not None:
+            foretell(wanted, expected)
+        known = time.perf_counter()
+        line.enter("remesh")
+        line.note = f"about {expected.vertices:,.0f} points"
+        line.expected_seconds = known - started + expected.seconds
+        ledger, done, corrections = _to_count(mesh, chosen, options, wanted, geometry, project)
+        if ledger.is_featureless:
+            tell([f"no second derivative in {', '.join(names)}: the mesh is uniform"])
+        line.enter("transfer")
+        line.note = f"{done.mesh.n_points:,} points"
+        carried = transfer(mesh, fields, done.mesh, options.transfer)
+        line.enter("certificate")
+        stars = _judged(done, options.remesh)
+        learn(mesh.dim, done.mesh.n_points, (time.perf_counter() - known) / (1 + corrections))
     report = AdaptReport(
         metric_fields=names,
         metric=ledger,
+        forecast=expected,
         remesh=done.report,
         transfer=carried.report,
         corrections=corrections,
@@ -345,7 +371,7 @@ def _to_count(
     mesh: Mesh,
     fields: Mapping[str, Field],
     options: AdaptOptions,
-    first: Wanted | None,
+    first: Wanted,
     geometry: Mesh | None,
     project: Project | None,
 ) -> tuple[Ledger, Remeshed, int]:
@@ -354,8 +380,10 @@ def _to_count(
     The number jumps on small meshes, so that the last mesh need not be the best.
     """
     wanted, best = options.metric, None
+    M, ledger = first
     for corrections in range(MAX_CORRECTIONS + 1):
-        M, ledger = first if first is not None else from_fields(mesh, fields, wanted)
+        if corrections:
+            M, ledger = from_fields(mesh, fields, wanted)
         done = remesh(mesh, M, options.remesh, geometry=geometry, project=project)
         miss = _miss(options.metric, done.mesh.n_cells)
         if best is None or miss < best[0]:
@@ -365,7 +393,7 @@ def _to_count(
         # a budget that stopped it will stop the next, but the cap holds all the same
         if corrected is None or not (done.report.converged or is_over):
             return ledger, done, corrections
-        wanted, first = corrected, None
+        wanted = corrected
     assert best is not None  # the loop has run
     _, ledger, done = best
     cap = options.metric.max_elements

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
 from ..base.errors import MeshingError
+from ..base.progress import task
 from ..base.report import Reportable, as_builtin
 from ..base.telling import telling_once
 from ..judging.interpolation_error import interpolation_error
@@ -184,21 +185,31 @@ def adapt_loop(
     solve = solve if like is None else solving_on(solve, like)
     steps, wanted = list(finished), None
     try:
-        while not steps or (reason := _reason_to_stop(steps, options)) is None:
-            state = (
-                _adapted(steps, options, wanted, shape, project)
-                if steps
-                else _State(0, None, first, {}, None, None)
-            )
-            step, wanted = _judged(_solved(solve, state, options), steps, options)
-            steps.append(step)
-            if callback is not None and callback(steps[-1]) is True:
-                return Loop(tuple(steps), "stopped by the callback")
-        return Loop(tuple(steps), reason)
+        with task("loop", total=_expected_solves(options)) as line:
+            line.steps = len(steps)
+            while not steps or (reason := _reason_to_stop(steps, options)) is None:
+                line.enter("adapt")
+                state = (
+                    _adapted(steps, options, wanted, shape, project)
+                    if steps
+                    else _State(0, None, first, {}, None, None)
+                )
+                line.enter("solve")
+                step, wanted = _judged(_solved(solve, state, options), steps, options)
+                steps.append(step)
+                line.advance(f"{step.mesh.n_points:,} points")
+                if callback is not None and callback(steps[-1]) is True:
+                    return Loop(tuple(steps), "stopped by the callback")
+            return Loop(tuple(steps), reason)
     except Exception as error:
         message = f"iteration {len(steps)}: {error}"
         done = Loop(tuple(steps), message)
         raise LoopError(message, done, getattr(error, "report", None)) from error
+
+
+def _expected_solves(options: LoopOptions) -> int | None:
+    """Return how many there are at most, None where an error decides."""
+    return len(options.complexities) + 1 if options.complexities else None
 
 
 def _solved(solve: Solve, state: _State, options: LoopOptions) -> Step:

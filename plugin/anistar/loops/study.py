@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.progress import task
 from ..base.report import as_builtin, attributes, write_json, write_text
 from ..judging.interpolation_error import ExactFunction, l2_error
 from ..meshes.fields import as_fields
@@ -200,16 +201,20 @@ def convergence_study(
     first = held.mesh
     shape = (held.geometry or first) if geometry is None else as_mesh(geometry, "geometry")
     solve = solve if like is None else solving_on(solve, like)
-    steps = _last_of_each(adapt_loop(solve, first, loop, geometry=shape).steps, repeats)
     others: dict[str, tuple[StudyRow, ...]] = {}
-    for kind in baselines:
-        if kind == "uniform":
-            meshes = [_uniform(first, shape, value) for value in complexities]
-            solved = [(one, dict(solve(one, {}))) for one in meshes]
-        else:
-            made = adapt_loop(solve, first, _isotropic(loop), geometry=shape).steps
-            solved = [(step.mesh, step.fields) for step in _last_of_each(made, repeats)]
-        others[kind] = _rows(complexities, solved, measure)
+    with task("study", total=1 + len(baselines)) as line:
+        line.enter("adapted")
+        steps = _last_of_each(adapt_loop(solve, first, loop, geometry=shape).steps, repeats)
+        for kind in baselines:
+            line.advance()
+            line.enter(kind)
+            if kind == "uniform":
+                meshes = [_uniform(first, shape, value) for value in complexities]
+                solved = [(one, dict(solve(one, {}))) for one in meshes]
+            else:
+                made = adapt_loop(solve, first, _isotropic(loop), geometry=shape).steps
+                solved = [(step.mesh, step.fields) for step in _last_of_each(made, repeats)]
+            others[kind] = _rows(complexities, solved, measure)
     table = _rows(complexities, [(step.mesh, step.fields) for step in steps], measure)
     counts, errors = [row.points for row in table], [row.error for row in table]
     return Study(table, observed_order(counts, errors, first.dim), steps, others)

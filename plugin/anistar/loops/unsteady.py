@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..base.arguments import require
 from ..base.arrays import Floats
 from ..base.errors import MeshingError
+from ..base.progress import task
 from ..base.report import attributes
 from ..base.telling import telling_once
 from ..meshes.fields import Field, as_fields
@@ -234,17 +235,21 @@ def unsteady_loop(
     as_fields(first, now.fields)
     carry = partial(_evaluated, fields) if callable(fields) else partial(_carried, options.adapt)
     windows: list[Window] = []
-    for ends in _windows(instants, options.window):
-        try:
-            history, window = _solved(advance, now, ends, options, shape, carry)
-        except Exception as error:
-            where = f"window {len(windows)}, from time {now.time:g}"
-            raise MeshingError(f"{where}: {error}", getattr(error, "report", None)) from error
-        if callback is not None:
-            for instant in history[bool(windows) :]:
-                callback(instant)
-        windows.append(window)
-        now, carry = history[-1], partial(_carried, options.adapt)
+    spans = list(_windows(instants, options.window))
+    with task("unsteady loop", total=len(spans)) as line:
+        for ends in spans:
+            line.enter(f"time {now.time:g}")
+            try:
+                history, window = _solved(advance, now, ends, options, shape, carry)
+            except Exception as error:
+                where = f"window {len(windows)}, from time {now.time:g}"
+                raise MeshingError(f"{where}: {error}", getattr(error, "report", None)) from error
+            if callback is not None:
+                for instant in history[bool(windows) :]:
+                    callback(instant)
+            windows.append(window)
+            line.advance(f"{window.points:,} points")
+            now, carry = history[-1], partial(_carried, options.adapt)
     return Unsteady(now, tuple(windows))
 
 

@@ -112,7 +112,7 @@ def vertices_for(complexity: float, dim: int) -> float:
 
 def fits(n_vertices: float, dim: int, options: RemeshOptions) -> bool:
     """Return whether a mesh that the budgets allow has room."""
-    n_vertices = _bounded(n_vertices, options)
+    n_vertices = bounded_vertices(n_vertices, options)
     most = available_memory() if options.max_memory is None else options.max_memory
     is_numbered = n_vertices * CELLS_PER_VERTEX[dim] <= MOST_CELLS
     return is_numbered and n_vertices * BYTES_PER_VERTEX[dim] <= most
@@ -122,7 +122,7 @@ def refuse(n_vertices: float, dim: int, options: RemeshOptions, what: str) -> No
     """Raise MeshingError if a mesh has no room, and say what asks for it."""
     if fits(n_vertices, dim, options):
         return
-    n_vertices = _bounded(n_vertices, options)
+    n_vertices = bounded_vertices(n_vertices, options)
     n_cells, n_bytes = n_vertices * CELLS_PER_VERTEX[dim], n_vertices * BYTES_PER_VERTEX[dim]
     advice = "set h_min or a smaller target, or bound the run by max_vertices"
     limit, origin = options.max_memory, "max_memory"
@@ -130,8 +130,8 @@ def refuse(n_vertices: float, dim: int, options: RemeshOptions, what: str) -> No
         limit, origin = available_memory(), "what is free here"
     if not n_bytes <= limit:
         raise MeshingError(
-            f"{what} asks for about {n_vertices:.1e} vertices, which take {_told(n_bytes)} "
-            f"of memory, more than {origin}, {_told(limit)}; {advice}, or let it take more "
+            f"{what} asks for about {n_vertices:.1e} vertices, which take {told_bytes(n_bytes)} "
+            f"of memory, more than {origin}, {told_bytes(limit)}; {advice}, or let it take more "
             "by max_memory (bytes)"
         )
     raise MeshingError(
@@ -140,7 +140,7 @@ def refuse(n_vertices: float, dim: int, options: RemeshOptions, what: str) -> No
     )
 
 
-def _bounded(n_vertices: float, options: RemeshOptions) -> float:
+def bounded_vertices(n_vertices: float, options: RemeshOptions) -> float:
     """Return how many vertices the budgets let a mesh have."""
     if options.max_vertices is not None:
         n_vertices = min(n_vertices, float(options.max_vertices))
@@ -150,7 +150,7 @@ def _bounded(n_vertices: float, options: RemeshOptions) -> float:
     return n_vertices
 
 
-def _told(n_bytes: float) -> str:
+def told_bytes(n_bytes: float) -> str:
     """Return a number of bytes as a person says it."""
     told = n_bytes / 1000.0
     for unit in ("kB", "MB", "GB", "TB"):

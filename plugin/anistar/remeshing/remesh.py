@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..base.arrays import Floats, Ints
 from ..base.core_errors import meshing_errors
+from ..base.progress import task
 from ..base.settings import chosen
 from ..base.telling import tell
 from ..judging.certificate import keep_certificate
@@ -215,14 +216,14 @@ def _made(
     ridges.
     """
     carrier = mesh_arrays(mesh, scale=scale)
-    with meshing_errors(scale):
+    with task("remesh") as line, meshing_errors(scale):
         return _core.remesh(
             mesh=carrier,
             metric=metric,
             geometry=carrier if geometry is mesh else mesh_arrays(geometry, scale=scale),
             settings=options.as_settings(),
             project=None if project is None else pointwise(project, geometry, scale),
-            callback=options.callback,
+            callback=line.callback(options.callback),
         )
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 
 from ..base.arrays import Floats
+from ..base.progress import task
 from ..base.settings import chosen
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
@@ -111,14 +112,15 @@ def _transferred(
     checked = as_fields(source, fields)
     regions = common_regions(source, target)
     warn_of_unmatched(regions)
-    done = (
-        _interpolated(source, checked, target, options)
-        if options.method == "interpolate"
-        else _projected(source, checked, target, options)
-    )
-    seen, wanted = done.seen, options.wants_l2_difference
-    if seen is None and wanted:
-        seen = overlapped(source, checked, target, options)
+    with task("transfer"):
+        done = (
+            _interpolated(source, checked, target, options)
+            if options.method == "interpolate"
+            else _projected(source, checked, target, options)
+        )
+        seen, wanted = done.seen, options.wants_l2_difference
+        if seen is None and wanted:
+            seen = overlapped(source, checked, target, options)
 
     def change_of(name: str) -> FieldChange:
         carried = done.fields[name]

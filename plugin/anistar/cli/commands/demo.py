@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from ...base.progress import task
 from ...demo.result import DEMO_FILES, Demo
 from ...runs.lock import locked
 from ...runs.own_files import OwnFiles
@@ -40,8 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     with locked(folder):
         _make_room(folder, arguments)
-        with console.progress_bar(stages(complexities), is_quiet=arguments.json) as advance:
-            demo = run_demo(folder, complexities=complexities, progress=advance)
+        with task("demo", total=stages(complexities)) as line:
+            demo = run_demo(folder, complexities=complexities, progress=line.advance)
     if arguments.json:
         console.show_json(demo)
         return 0

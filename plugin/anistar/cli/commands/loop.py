@@ -92,9 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
         finished = folder.load() if arguments.resume else _begun(arguments, folder)
         solve.count = len(finished)
         first = finished[0].mesh if finished else mesh
-        loop = _looped(
-            solve, first, options, given.geometry, folder=folder, is_quiet=arguments.json
-        )
+        loop = _looped(solve, first, options, given.geometry, folder=folder)
     if arguments.json:
         console.show_json(loop)
     else:
@@ -116,28 +114,21 @@ def _looped(
     geometry: Mesh | None,
     *,
     folder: RunFolder,
-    is_quiet: bool,
 ) -> Loop:
     """Run the loop after the steps that the folder holds, and save every further one."""
     finished = list(folder.steps)
-    total = len(options.complexities) + 1 if options.complexities else None
-    with console.progress_bar(total, is_quiet=is_quiet) as advance:
 
-        def moved(step: Step) -> None:
-            folder.save(step)
-            advance(f"{step.mesh.n_points} points")
-
-        try:
-            loop = adapt_loop(
-                solve, first, options, geometry=geometry, callback=moved, finished=finished
-            )
-        except LoopError as error:
-            with suppress(FormatError):  # the disk that is full, say, is in the first error
-                folder.close(error.loop)
-            raise
-        except KeyboardInterrupt:
-            folder.close(Loop(tuple(folder.steps), "interrupted"))
-            raise
+    try:
+        loop = adapt_loop(
+            solve, first, options, geometry=geometry, callback=folder.save, finished=finished
+        )
+    except LoopError as error:
+        with suppress(FormatError):  # the disk that is full, say, is in the first error
+            folder.close(error.loop)
+        raise
+    except KeyboardInterrupt:
+        folder.close(Loop(tuple(folder.steps), "interrupted"))
+        raise
     folder.close(loop)
     return loop
 

@@ -10,6 +10,7 @@ from scipy.sparse import bsr_array, csr_array
 
 from ... import _core
 from ...base.arrays import Bools, Floats
+from ...base.progress import task
 from ...meshes.mesh import Mesh
 from ...meshes.topology import cell_volumes
 from ..regions import Regions, common_regions, sums_by_region
@@ -139,19 +140,20 @@ def supermesh(
     """
     regions = common_regions(source, target)
     intersect = _core.supermesh2 if source.dim == 2 else _core.supermesh3
-    made = intersect(
-        np.ascontiguousarray(source.points),
-        np.ascontiguousarray(source.cells),
-        regions.source,
-        np.ascontiguousarray(target.points),
-        np.ascontiguousarray(target.cells),
-        regions.target,
-        np.zeros((0, 0)) if nodal is None else np.ascontiguousarray(nodal),
-        points=points,
-        blocks=blocks,
-        threads=threads,
-        callback=callback,
-    )
+    with task("intersect") as line:
+        made = intersect(
+            np.ascontiguousarray(source.points),
+            np.ascontiguousarray(source.cells),
+            regions.source,
+            np.ascontiguousarray(target.points),
+            np.ascontiguousarray(target.cells),
+            regions.target,
+            np.zeros((0, 0)) if nodal is None else np.ascontiguousarray(nodal),
+            points=points,
+            blocks=blocks,
+            threads=threads,
+            callback=line.callback(callback),
+        )
     starts, columns, volumes = made["pairs"]
     shape, width = (target.n_cells, source.n_cells), source.dim + 1
     block_shape = (shape[0] * width, shape[1] * width)
