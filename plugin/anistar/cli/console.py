@@ -4,16 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rich import box
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 from ..base.report import to_json
+from ..loops.forecast import Forecast
+from ..remeshing.concerns import Level
 from ..remeshing.report import RemeshReport
 from .streams import complain, readers_may_leave
+
+#: Shorter work is not foretold.
+SECONDS_WORTH_TELLING = 1.0
+
+_STYLES = {"": "", "look": "yellow", "bad": "bold red"}
+_MARKS = {"": "", "look": " !", "bad": " !!"}
+
+
+class Marked(NamedTuple):
+    """A cell of a table that may be worth a look, or bad."""
+
+    text: str
+    level: Level
 
 
 class _Terminal(Console):
@@ -35,10 +51,10 @@ def show_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]
     """Print a table on stdout; numbers go to the right."""
     table = Table(title=escape(title), box=box.SIMPLE_HEAD, title_justify="left")
     for index, column in enumerate(columns):
-        is_number = bool(rows) and isinstance(rows[0][index], int | float)
+        is_number = bool(rows) and isinstance(rows[0][index], int | float | Marked)
         table.add_column(column, justify="right" if is_number else "left")
     for row in rows:
-        table.add_row(*(escape(as_text(value)) for value in row))
+        table.add_row(*(_cell(value) for value in row))
     _Terminal().print(table)
 
 
@@ -69,6 +85,18 @@ def say_replaced(paths: Sequence[str], by: str, *, beside_json: bool) -> None:
         note(f"{' and '.join(paths)} {verb} replaced by {by}", beside_json=beside_json)
 
 
+def say_forecast(expected: Forecast, *, beside_json: bool) -> None:
+    """Tell what long work will take, before it begins."""
+    if expected.seconds >= SECONDS_WORTH_TELLING:
+        note(f"expected: {expected}", beside_json=beside_json)
+
+
+def _cell(value: Any) -> Text | str:
+    if isinstance(value, Marked):
+        return Text(value.text + _MARKS[value.level], style=_STYLES[value.level])
+    return escape(as_text(value))
+
+
 def as_text(value: Any) -> str:
     """Return a number or text as a cell of a table."""
     if value is None:
@@ -78,11 +106,8 @@ def as_text(value: Any) -> str:
     return str(value)
 
 
-def show_remeshed(
-    title: str, rows: Sequence[Sequence[Any]], report: RemeshReport, verdict: str
-) -> None:
-    """Print the sizes of both meshes, why the mesher stopped early, and the verdict."""
-    show_table(title, ["mesh", "points", "cells"], rows)
+def say_stop_and_verdict(report: RemeshReport, verdict: str) -> None:
+    """Print why the mesher stopped early, if it did, and the verdict."""
     if not report.converged:
         reason = report.stop_reason
         if reason == "finished":  # all but the insertion of points until the stars agree

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
+from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes
 from ..metric.recovery import hessian_and_noise
@@ -76,6 +77,23 @@ def interpolation_error(mesh: Mesh, u: ArrayLike, *, on: str = "points") -> floa
     mean_square = 0.25 * np.einsum("ce,ef,cf->c", stretch, _pair_moments(pairs), stretch)
     of_noise = 2.0 * noise * noise / (mesh.dim + 2)
     return scale * math.sqrt(_integral(mesh, mean_square + of_noise))
+
+
+def field_error(mesh: Mesh, field: Field) -> float:
+    """Estimate the L2 norm of the interpolation error of a scalar or vector field.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh that carries the field.
+    field : Field
+        On points or cells; the squares of the components are added.
+    """
+    columns = field.values.reshape(len(field.values), -1).T
+    errors = np.array([interpolation_error(mesh, column, on=field.on) for column in columns])
+    largest = float(errors.max())
+    # Relative to the largest, whose square may be out of range.
+    return largest * math.sqrt(float(np.square(errors / largest).sum())) if largest > 0 else largest
 
 
 def _integral(mesh: Mesh, means: Floats) -> float:

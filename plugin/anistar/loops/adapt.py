@@ -24,13 +24,13 @@ from ..metric.base.by_name import by_name
 from ..metric.base.given import AnyFields, given_fields
 from ..objects import AnyMesh, as_mesh, made, opened
 from ..remeshing.demand import check_targets
-from ..remeshing.forecast import Forecast, forecast, learn
 from ..remeshing.options import RemeshOptions
 from ..remeshing.project import Project
 from ..remeshing.remesh import Remeshed, remesh
 from ..remeshing.report import RemeshReport
 from ..remeshing.verdict import verdict_line
 from ..transfer import TransferOptions, TransferReport, transfer
+from .forecast import Forecast, forecast, learn
 
 STAGES = ("metric", "remesh", "transfer")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +15,7 @@ from ..base.errors import MeshingError
 from ..base.progress import task
 from ..base.report import Reportable, as_builtin
 from ..base.telling import telling_once
-from ..judging.interpolation_error import interpolation_error
+from ..judging.interpolation_error import field_error
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..objects import AnyMesh, as_mesh, made, opened, values_of
@@ -223,7 +222,7 @@ def _solved(solve: Solve, state: _State, options: LoopOptions) -> Step:
     _refuse_nan(state.mesh, checked)
     qoi = None if options.qoi is None else float(options.qoi(state.mesh, dict(fields)))
     names = metric_field_names(checked, options.adapt.metric_fields)
-    error = {name: _estimated(state.mesh, checked[name]) for name in names}
+    error = {name: field_error(state.mesh, checked[name]) for name in names}
     return Step(
         iteration=state.iteration,
         complexity=state.complexity,
@@ -319,14 +318,6 @@ def _reason_to_stop(steps: list[Step], options: LoopOptions) -> str | None:
         done = step.iteration + skipped == len(options.complexities or ())
         return "complexities done" if done else f"max_iterations {options.max_iterations} reached"
     return None
-
-
-def _estimated(mesh: Mesh, field: Field) -> float:
-    columns = field.values.reshape(len(field.values), -1).T
-    errors = np.array([interpolation_error(mesh, column, on=field.on) for column in columns])
-    largest = float(errors.max())
-    # Relative to the largest, whose square may be out of range.
-    return largest * math.sqrt(float(np.square(errors / largest).sum())) if largest > 0 else largest
 
 
 def _refuse_nan(mesh: Mesh, fields: Mapping[str, Field]) -> None:

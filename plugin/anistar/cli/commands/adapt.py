@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 
 from ...formats import write, write_metric
-from ...loops.adapt import Adapted, adapt
+from ...loops.adapt import Adapted, Wanted, adapt_to
+from ...loops.forecast import Forecast
 from .. import console
+from ..before_after import MeshBefore, errors_of, show_before_and_after
 from ..certificate_files import arrays_for
 from ..files import metric_target, replaced_inputs, writable
 from ..inputs import read_input
@@ -50,8 +52,19 @@ def run(arguments: argparse.Namespace) -> int:
     metric_output = metric_target(arguments.metric_output, output)
     options = adapt_options(arguments, metric_fields=arguments.field)
     given = read_input(arguments.input, arguments.geometry, beside_json=arguments.json)
-    mesh = given.mesh
-    done = adapt(mesh, given.fields, options, geometry=given.geometry)
+    before: list[MeshBefore] = []
+
+    def foretold(wanted: Wanted, expected: Forecast) -> None:
+        if not arguments.quiet:
+            console.say_forecast(expected, beside_json=arguments.json)
+        if not arguments.json:
+            names = tuple(wanted.ledger.predicted_error)
+            measured = MeshBefore.of(
+                arguments.input, given.mesh, wanted.metric, given.fields, names
+            )
+            before.append(measured)
+
+    done = adapt_to(given.mesh, given.fields, options, geometry=given.geometry, foretell=foretold)
     inputs = (arguments.input, arguments.geometry)
     replaced = replaced_inputs(inputs, output, metric_output)
     write(output, done.mesh, done.fields | arrays_for(output, done.mesh, done.metric))
@@ -61,12 +74,13 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         console.show_json(done.report)
     else:
-        _show(arguments.input, mesh.n_points, mesh.n_cells, arguments.output, done)
+        _show(before[0], arguments.output, done)
     return 0
 
 
-def _show(source: str, points: int, cells: int, target: str, done: Adapted) -> None:
-    rows = [[source, points, cells], [target, done.mesh.n_points, done.mesh.n_cells]]
+def _show(before: MeshBefore, target: str, done: Adapted) -> None:
     report = done.report
+    errors = errors_of(done.mesh, done.fields, report.metric_fields)
     title = f"adapted in {report.seconds:.2f} s"
-    console.show_remeshed(title, rows, report.remesh, report.verdict)
+    show_before_and_after(title, before, target, report.remesh, errors, report.star_ok)
+    console.say_stop_and_verdict(report.remesh, report.verdict)

@@ -8,10 +8,13 @@ from pathlib import Path
 from ...base.errors import FormatError
 from ...formats import METRIC, read_metric, write, write_metric
 from ...formats.suffixes import SOLUTION_OF, solution_beside, suffix_of
+from ...loops.forecast import forecast
 from ...meshes.fields import Field
+from ...metric import estimate
 from ...remeshing.remesh import remesh
 from ...transfer import transfer
 from .. import console
+from ..before_after import MeshBefore, show_before_and_after
 from ..certificate_files import arrays_for
 from ..files import metric_target, replaced_inputs, writable
 from ..inputs import read_input
@@ -55,6 +58,9 @@ def run(arguments: argparse.Namespace) -> int:
     given = read_input(arguments.input, arguments.geometry, beside_json=arguments.json)
     mesh = given.mesh
     M = read_metric(source, mesh)
+    if not arguments.quiet:
+        expected = forecast(estimate(mesh, M), mesh.dim, options.remesh)
+        console.say_forecast(expected, beside_json=arguments.json)
     done = remesh(mesh, M, options.remesh, geometry=given.geometry)
     # The solution beside a medit mesh is the metric itself, not a field to carry.
     carried = {} if source == beside else given.fields
@@ -70,9 +76,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         console.show_json(done.report)
     else:
-        rows = [
-            [arguments.input, mesh.n_points, mesh.n_cells],
-            [arguments.output, done.mesh.n_points, done.mesh.n_cells],
-        ]
-        console.show_remeshed("remeshed", rows, done.report, done.report.verdict)
+        before = MeshBefore.of(arguments.input, mesh, M, {})
+        title = f"remeshed in {sum(done.report.seconds.values()):.2f} s"
+        report = done.report
+        show_before_and_after(title, before, arguments.output, report, {}, report.star_ok)
+        console.say_stop_and_verdict(report, report.verdict)
     return 0

@@ -12,9 +12,9 @@ import numpy as np
 from ..base.report import attributes
 from ..meshes.mesh import Mesh
 from ..metric import Estimate
-from .demand import BYTES_PER_VERTEX, CELLS_PER_VERTEX, bounded_vertices, told_bytes
-from .options import RemeshOptions
-from .remesh import remesh
+from ..remeshing.demand import BYTES_PER_VERTEX, CELLS_PER_VERTEX, bounded_vertices, told_bytes
+from ..remeshing.options import RemeshOptions
+from ..remeshing.remesh import remesh
 
 #: Of a vertex, from the metric to the transferred fields, where the probe below takes
 #: `PROBE_SECONDS`: measured on meshes of 2e3 to 7e4 vertices, 1.5e-5 to 4e-5 in 2D and 0.9e-4 to
@@ -95,7 +95,7 @@ def learn(dim: int, vertices: int, seconds: float) -> None:
 
 @cache
 def _probed() -> float:
-    """Return how much slower than where the rates were measured this machine is, by a small mesh."""
+    """Return how much slower this machine is than where the rates were measured."""
     square = Mesh(
         points=np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),
         cells=np.array([[0, 1, 2], [0, 2, 3]]),
