@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from ..base.told import Told
 from ..laws.estimate import Estimate
 
 
@@ -17,8 +18,8 @@ class Stage:
     remark: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Ledger:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Ledger(Told):
     """What `from_fields` did.
 
     Attributes
@@ -67,6 +68,15 @@ class Ledger:
     def is_featureless(self) -> bool:
         """Whether no field has a second derivative anywhere, so that the metric is uniform."""
         return not any(self.predicted_error.values())
+
+    def _figures(self) -> dict[str, Any]:
+        names = ("complexity", "target_complexity", "reached", "predicted_error")
+        told = {name: getattr(self, name) for name in names}
+        return {**told, "expected_vertices": round(self.estimate.vertices)}
+
+    def _table(self) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:
+        rows = [(stage.name, stage.complexity, stage.remark) for stage in self.stages]
+        return ("stage", "complexity", "remark"), rows
 
     def as_dict(self) -> dict[str, Any]:
         """Return the ledger in JSON builtins."""

@@ -1,7 +1,11 @@
 """anistar: certified anisotropic Delaunay mesh adaptation for any PDE code."""
 
+import importlib
+from types import ModuleType
+
 from . import metric
 from .base.errors import FormatError, MeshingError
+from .base.progress import progress
 from .formats import read, write
 from .judging.certificate import Certificate, certify
 from .judging.explanation import FacetOfStar, SimplexOfStar, explain_star, explain_surface_star
@@ -66,6 +70,7 @@ __all__ = [
     "explain_surface_star",
     "metric",
     "needs_adaptation",
+    "progress",
     "read",
     "remesh",
     "transfer",
@@ -77,3 +82,16 @@ __all__ = [
 ]
 
 follow_imports()
+
+# Rooms that need an optional package, or are seldom needed: imported where they are asked for.
+_ROOMS = {"pictures": ".pictures", "series": ".runs.series"}
+
+
+def __getattr__(name: str) -> ModuleType:
+    if name not in _ROOMS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return importlib.import_module(_ROOMS[name], __name__)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_ROOMS])

@@ -16,7 +16,9 @@ from ..base.core_errors import meshing_errors
 from ..base.progress import task
 from ..base.report import as_builtin
 from ..meshes.mesh import Mesh
+from ..meshes.plotted import Plotted, Subject
 from ..metric import check_metric
+from ..metric.base.told import Told
 from ..objects import AnyMesh, metric_on
 from .metric_mesh import Bytes, MetricMesh, Proof, SurfaceMesh, keep_proof, kept_proof
 from .skin import Shape, Skin
@@ -64,8 +66,8 @@ class _Judged:
         return ok
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Certificate:
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Certificate(Plotted, Told):
     """What is Delaunay in a mesh, each simplex tested in the metrics of its vertices.
 
     A simplex is *Delaunay in a metric* when no vertex that it can reach lies strictly inside its
@@ -130,6 +132,23 @@ class Certificate:
     def __post_init__(self, judged: _Judged) -> None:
         # not a field: those are what the certificate says
         object.__setattr__(self, "_judged", judged)
+
+    def _subject(self) -> Subject:
+        return Subject(
+            mesh=self._of.surface.as_mesh(),
+            metric=self._of.mesh.metric,
+            certificate=self,
+            colour="certificate",
+        )
+
+    def _figures(self) -> dict[str, Any]:
+        return {
+            "is_certified": self.is_certified,
+            "star_ok": _fraction(self.star_ok),
+            "simplex_ok": _fraction(self.simplex_ok),
+            "surface_star_ok": "{} of {}".format(*self.surface_stars),
+            "exempt": int(self.exempt.sum()),
+        }
 
     @cached_property
     def distortion(self) -> Floats:

@@ -88,15 +88,10 @@ class SurfaceMesh:
         arrays = (mesh.cell_tags, mesh.facet_tags, mesh.edges, mesh.edge_tags, mesh.corners)
         return cls(mesh=judged, tags=tuple(np.array(a, order="C") for a in arrays), skin=skin)
 
-    @cached_property
-    def bulges(self) -> Floats:
-        """Heights (k, 3) of the surface over the middles of the edges of every facet.
-
-        Of the edge opposite each vertex, where the normal of the facet points; in 2D the height
-        (k, 1) over the middle of the facet.
-        """
+    def as_mesh(self) -> Mesh:
+        """Return a mesh of these arrays, without names."""
         cell_tags, facet_tags, edges, edge_tags, corners = self.tags
-        mesh = Mesh._trusted(
+        return Mesh._trusted(
             points=self.mesh.points,
             cells=self.mesh.cells,
             cell_tags=cell_tags,
@@ -106,6 +101,15 @@ class SurfaceMesh:
             edge_tags=edge_tags,
             corners=corners,
         )
+
+    @cached_property
+    def bulges(self) -> Floats:
+        """Heights (k, 3) of the surface over the middles of the edges of every facet.
+
+        Of the edge opposite each vertex, where the normal of the facet points; in 2D the height
+        (k, 1) over the middle of the facet.
+        """
+        mesh = self.as_mesh()
         with meshing_errors():
             return _core.facet_bulges(mesh_arrays(mesh), self.skin.as_core())
 

@@ -19,9 +19,11 @@ from ..base.telling import tell, telling_once
 from ..judging.certificate import certify_and_keep, share_of
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
+from ..meshes.plotted import Plotted, Subject
 from ..metric import Ledger, MetricOptions, from_fields
 from ..metric.base.by_name import by_name
 from ..metric.base.given import AnyFields, given_fields
+from ..metric.base.told import Told
 from ..objects import AnyMesh, as_mesh, made, opened
 from ..remeshing.demand import check_targets
 from ..remeshing.options import RemeshOptions
@@ -151,8 +153,8 @@ class AdaptOptions:
         return replace(base, **stages, max_refinement=None)
 
 
-@dataclass(frozen=True, slots=True)
-class AdaptReport:
+@dataclass(frozen=True, slots=True, repr=False)
+class AdaptReport(Told):
     """What an adaptation did.
 
     Attributes
@@ -193,13 +195,20 @@ class AdaptReport:
     surface_star_ok: float | None
     verdict: str
 
+    def _figures(self) -> dict[str, Any]:
+        made, own = self.remesh._figures(), {"star_ok": self.star_ok, "seconds": self.seconds}
+        return {**made, **own, "metric_fields": ", ".join(self.metric_fields)}
+
+    def _table(self) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:
+        return self.remesh._table()
+
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
         return attributes(self)
 
 
-@dataclass(frozen=True, eq=False)
-class Adapted:
+@dataclass(frozen=True, eq=False, repr=False)
+class Adapted(Plotted, Told):
     """The new mesh, the fields and the metric on it, and the report."""
 
     mesh: Mesh
@@ -210,6 +219,20 @@ class Adapted:
     def to(self, like: AnyMesh) -> Any:
         """Return the mesh with its fields in another form, see `anistar.objects.made`."""
         return made(self.mesh, self.fields, like)
+
+    def _subject(self) -> Subject:
+        return Subject(
+            mesh=self.mesh,
+            fields=self.fields,
+            metric=self.metric,
+            colour=self.report.metric_fields[0],
+        )
+
+    def _figures(self) -> dict[str, Any]:
+        return self.report._figures()
+
+    def _drawing(self) -> str:
+        return self.mesh._drawing()
 
 
 def adapt(

@@ -18,6 +18,8 @@ from ..base.telling import telling_once
 from ..judging.interpolation_error import field_error
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
+from ..meshes.plotted import Plotted, Subject
+from ..metric.base.told import Told
 from ..objects import AnyMesh, as_mesh, made, opened, values_of
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
@@ -29,8 +31,8 @@ Fields = Mapping[str, Field | ArrayLike]
 Solve = Callable[[Mesh, dict[str, Any]], Fields]
 
 
-@dataclass(frozen=True, eq=False)
-class Step:
+@dataclass(frozen=True, eq=False, repr=False)
+class Step(Plotted, Told):
     """One solve, on the mesh that the adaptation before it made.
 
     Attributes
@@ -71,6 +73,20 @@ class Step:
     seconds: float
     settled: bool = False
 
+    def _subject(self) -> Subject:
+        first = next(iter(self.error), None)
+        colour = "tags" if first is None else first
+        return Subject(mesh=self.mesh, fields=self.fields, metric=self.metric, colour=colour)
+
+    def _figures(self) -> dict[str, Any]:
+        counts = {"points": self.mesh.n_points, "cells": self.mesh.n_cells}
+        names = ("iteration", "complexity", "error", "qoi", "seconds")
+        told = {name: getattr(self, name) for name in names}
+        return {**told, **counts}
+
+    def _drawing(self) -> str:
+        return self.mesh._drawing()
+
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only: numbers and reports, not the arrays."""
         names = ("iteration", "complexity", "qoi", "error", "seconds", "settled", "report")
@@ -78,12 +94,26 @@ class Step:
         return {**counts, **{name: as_builtin(getattr(self, name)) for name in names}}
 
 
-@dataclass(frozen=True, eq=False)
-class Loop:
+@dataclass(frozen=True, eq=False, repr=False)
+class Loop(Plotted, Told):
     """The steps of a loop and why it stopped."""
 
     steps: tuple[Step, ...]
     stop_reason: str
+
+    def _subject(self) -> Subject:
+        if not self.steps:
+            raise ValueError("the loop has no step to plot")
+        return self.steps[-1]._subject()
+
+    def _figures(self) -> dict[str, Any]:
+        last: dict[str, Any] = self.steps[-1]._figures() if self.steps else {}
+        told = {name: last[name] for name in last if name in ("points", "cells", "error")}
+        return {"steps": len(self.steps), "stop_reason": self.stop_reason, **told}
+
+    def _table(self) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:
+        rows = [tuple(step._figures().values()) for step in self.steps]
+        return tuple(self.steps[0]._figures()) if self.steps else (), rows
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only: `stop_reason` and `steps`."""

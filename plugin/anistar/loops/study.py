@@ -17,6 +17,7 @@ from ..judging.interpolation_error import ExactFunction, l2_error
 from ..meshes.fields import as_fields
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes
+from ..metric.base.told import Told
 from ..metric.kernels.elementary import log, power
 from ..objects import AnyMesh, as_mesh, opened
 from ..remeshing.remesh import remesh
@@ -57,8 +58,8 @@ class StudyRow:
         return attributes(self)
 
 
-@dataclass(frozen=True, eq=False)
-class Study:
+@dataclass(frozen=True, eq=False, repr=False)
+class Study(Told):
     """The table of a convergence study, and the order fitted to all of it.
 
     Attributes
@@ -78,6 +79,19 @@ class Study:
     order: float
     steps: tuple[Step, ...]
     baselines: dict[str, tuple[StudyRow, ...]] = field(default_factory=dict)
+
+    def _figures(self) -> dict[str, Any]:
+        last = self.table[-1]
+        return {"order": self.order, "points": last.points, "error": last.error}
+
+    def _table(self) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:
+        tables = {**self.baselines, "adapted": self.table}
+        rows = [
+            (kind, row.complexity, row.points, row.error, row.order)
+            for kind, found in tables.items()
+            for row in found
+        ]
+        return ("meshes", "complexity", "points", "error", "order"), rows
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only: `order`, `table` and `baselines`."""

@@ -19,8 +19,10 @@ from ..base.report import attributes
 from ..base.telling import telling_once
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
+from ..meshes.plotted import Plotted, Subject
 from ..metric import from_fields
 from ..metric.base.by_name import by_name, require_numbers
+from ..metric.base.told import Told
 from ..metric.pipeline.scaling import Scale, scale_of
 from ..objects import AnyMesh, as_mesh, made, opened, values_of
 from ..remeshing.demand import check_targets
@@ -106,13 +108,20 @@ class UnsteadyOptions:
         return with_adapt_settings(cls, options, settings)
 
 
-@dataclass(frozen=True, eq=False)
-class Instant:
+@dataclass(frozen=True, eq=False, repr=False)
+class Instant(Plotted, Told):
     """The solution at one time."""
 
     time: float
     mesh: Mesh
     fields: Fields
+
+    def _subject(self) -> Subject:
+        return Subject(mesh=self.mesh, fields=self.fields, colour=next(iter(self.fields), "tags"))
+
+    def _figures(self) -> dict[str, Any]:
+        counts = {"points": self.mesh.n_points, "cells": self.mesh.n_cells}
+        return {"time": self.time, **counts, "fields": ", ".join(self.fields)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,12 +152,23 @@ class Window:
         return attributes(self)
 
 
-@dataclass(frozen=True, eq=False)
-class Unsteady:
+@dataclass(frozen=True, eq=False, repr=False)
+class Unsteady(Plotted, Told):
     """The solution at the end, and what was done for every window."""
 
     last: Instant
     windows: tuple[Window, ...]
+
+    def _subject(self) -> Subject:
+        return self.last._subject()
+
+    def _figures(self) -> dict[str, Any]:
+        made = sum(window.adaptations for window in self.windows)
+        return {**self.last._figures(), "windows": len(self.windows), "adaptations": made}
+
+    def _table(self) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:
+        names = ("begin", "end", "points", "cells", "adaptations")
+        return names, [tuple(getattr(one, name) for name in names) for one in self.windows]
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only: the end `time` and the `windows`."""

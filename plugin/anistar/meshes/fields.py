@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import AnyArray
 from ..metric.base.given import refuse_masked
+from ..metric.base.told import Told
 
 if TYPE_CHECKING:
     from .mesh import Mesh
@@ -21,8 +22,8 @@ Kind = Literal["scalar", "vector", "tensor", "label"]
 _RANK = {"scalar": 1, "label": 1, "vector": 2, "tensor": 3}
 
 
-@dataclass(frozen=True, eq=False)
-class Field:
+@dataclass(frozen=True, eq=False, repr=False)
+class Field(Told):
     """Values at the points, in the cells or at the nodes of the cells of a mesh.
 
     Parameters
@@ -73,6 +74,12 @@ class Field:
         dtype = np.int64 if kind == "label" else np.float64
         object.__setattr__(self, "values", np.ascontiguousarray(values, dtype=dtype))
         object.__setattr__(self, "kind", kind)
+
+    def _figures(self) -> dict[str, Any]:
+        shape = {"kind": self.kind, "on": self.on, "shape": self.values.shape}
+        if self.values.size == 0:
+            return shape
+        return {**shape, "minimum": self.values.min(), "maximum": self.values.max()}
 
 
 def _deduced_kind(values: AnyArray, on: str) -> Kind:

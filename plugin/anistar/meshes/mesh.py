@@ -12,6 +12,9 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import AnyArray, Bools, Floats, Ints
 from ..metric.base.names import Tag, tags_called
+from ..metric.base.told import Told
+from .plotted import Plotted, Subject
+from .svg import drawing_of
 from .topology import FacetTable, facet_table
 from .violations import (
     Violation,
@@ -38,7 +41,7 @@ _UNSUPPORTED = {
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
+class Mesh(Plotted, Told):
     """A conforming simplicial mesh of a 2D or 3D domain, with tags and names.
 
     The constructor converts what can be converted without loss, checks everything that
@@ -192,6 +195,16 @@ class Mesh:
     def arrays(self) -> dict[str, Any]:
         """Return the arrays, names and height by field name, as the constructor takes them."""
         return {item.name: getattr(self, item.name) for item in fields(self)}
+
+    def _subject(self) -> Subject:
+        return Subject(mesh=self)
+
+    def _figures(self) -> dict[str, Any]:
+        counts = {"points": self.n_points, "cells": self.n_cells, "facets": self.n_facets}
+        return {"dim": self.dim, **counts, "names": ", ".join(sorted(self.names.values())) or None}
+
+    def _drawing(self) -> str:
+        return drawing_of(self.points, self.cells, self.facets)
 
     def __repr__(self) -> str:
         return (

@@ -53,7 +53,7 @@ def mesh_picture(path: Target, mesh: Mesh, *, box: Box | None = None, title: str
     axes.set_title(title)
     _draw_edges(axes, mesh, width=0.35)
     _draw_boundary(axes, mesh)
-    _save(figure, path)
+    save(figure, path)
 
 
 def certificate_picture(
@@ -92,7 +92,7 @@ def certificate_picture(
     axes.add_collection(PolyCollection(list(failing), facecolors=ACCENT, edgecolors="none"))
     _draw_edges(axes, mesh, width=0.7)
     _draw_boundary(axes, mesh)
-    _save(figure, path)
+    save(figure, path)
 
 
 def solution_picture(
@@ -121,7 +121,7 @@ def solution_picture(
     figure, axes = _canvas(mesh, box)
     _draw_solution(figure, axes, mesh, values, label)
     _draw_boundary(axes, mesh)
-    _save(figure, path)
+    save(figure, path)
 
 
 def metric_picture(path: Target, mesh: Mesh, M: Floats, *, box: Box | None = None) -> None:
@@ -143,7 +143,7 @@ def metric_picture(path: Target, mesh: Mesh, M: Floats, *, box: Box | None = Non
     figure, axes = _canvas(mesh, box)
     _draw_ellipses(axes, mesh, M)
     _draw_boundary(axes, mesh)
-    _save(figure, path)
+    save(figure, path)
 
 
 def overview_picture(
@@ -175,7 +175,7 @@ def overview_picture(
     _draw_ellipses(panels[2], *metric)
     for axes, shown in zip(panels, (mesh, mesh, metric[0]), strict=True):
         _draw_boundary(axes, shown)
-    _save(figure, path)
+    save(figure, path)
 
 
 def ellipses(points: Floats, M: Floats) -> Floats:
@@ -218,7 +218,7 @@ def convergence_picture(
     axes.set(xlabel="unknowns $N$", ylabel=label)
     axes.grid(True, which="both", color="#e4e8ec", linewidth=0.6)
     axes.legend(frameon=False)
-    _save(figure, path)
+    save(figure, path)
 
 
 def bars_picture(
@@ -243,7 +243,7 @@ def bars_picture(
     axes.set(xlabel=label, ylabel="count")
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
-    _save(figure, path)
+    save(figure, path)
 
 
 def _canvas(mesh: Mesh, box: Box | None, panels: int = 1) -> tuple[Any, Any]:
@@ -288,7 +288,8 @@ def _draw_boundary(axes: Any, mesh: Mesh) -> None:
     axes.add_collection(LineCollection(list(mesh.points[mesh.facets]), colors=INK, linewidths=1.1))
 
 
-def _save(figure: Any, path: Target) -> None:
+def save(figure: Any, path: Target) -> None:
+    """Write a figure, whole or not at all."""
     if isinstance(path, str | os.PathLike):
         with replaced(Path(path)) as temporary:
             figure.savefig(temporary, dpi=_DPI)

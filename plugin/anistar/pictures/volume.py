@@ -11,12 +11,13 @@ from ..base.arrays import Floats
 from ..base.extras import install_command
 from ..meshes.mesh import Mesh
 from ..meshes.topology import boundary_facets
-from .plane import INK, Target
+from .plane import INK, Target, save
 
 try:
     from matplotlib import colormaps
+    from matplotlib.cm import ScalarMappable
     from matplotlib.collections import PolyCollection
-    from matplotlib.colors import ListedColormap
+    from matplotlib.colors import ListedColormap, Normalize
     from matplotlib.figure import Figure
 except ImportError as error:
     error.add_note(f"pictures need matplotlib: {install_command('plot')}")
@@ -70,8 +71,42 @@ def volume_picture(
     if len(cells) == 0:
         raise ValueError("no cell is kept, there is nothing to draw")
     facets = boundary_facets(cells, mesh.n_points)
-    corners = mesh.points[facets]
-    across, up, towards = _axes_of(np.asarray(view, dtype=np.float64))
+    nodal = np.asarray(values, dtype=np.float64)
+    figure = Figure(figsize=(_INCHES, 0.85 * _INCHES), layout="constrained")
+    axes = figure.add_subplot(aspect="equal")
+    axes.set_axis_off()
+    # Parts of one field have the same colours.
+    scale = ScalarMappable(Normalize(float(nodal.min()), float(nodal.max())), _colours())
+    colours = scale.to_rgba(nodal[facets].mean(axis=1))
+    paint(axes, mesh.points[facets], colours, np.asarray(view, dtype=np.float64))
+    axes.autoscale_view()
+    figure.colorbar(scale, ax=axes, label=label, fraction=0.03, pad=0.01)
+    save(figure, path)
+
+
+def paint(
+    axes: Any, corners: Floats, colours: Floats, view: Floats, *, line_width: float = _LINE
+) -> None:
+    """Draw triangles in space as they are seen from far away, steep ones darker.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes
+    corners : (k, 3, 3) float64
+        Of triangles that are turned to the outside.
+    colours : (k, 4) float64
+        Red, green, blue and opacity.
+    view : (3,) float64
+        Direction from the mesh to the eye; z points up.
+    line_width : float
+        Of the edges, in points; 0 for none.
+
+    Raises
+    ------
+    ValueError
+        If one looks straight up or down.
+    """
+    across, up, towards = _axes_of(view)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     facing = normals @ towards
@@ -79,9 +114,12 @@ def volume_picture(
     seen = np.flatnonzero(facing > 0.0)
     order = seen[np.argsort(corners[seen].mean(axis=1) @ towards)]
     flat = np.stack([corners[order] @ across, corners[order] @ up], axis=-1)
-    nodal = np.asarray(values, dtype=np.float64)
-    limits = float(nodal.min()), float(nodal.max())
-    _draw(path, flat, nodal[facets[order]].mean(axis=1), limits, facing[order], label)
+    shaded = colours[order].copy()
+    shaded[:, :3] *= (_DARKEST + (1 - _DARKEST) * facing[order])[:, None]
+    edge = INK if line_width else "face"
+    axes.add_collection(
+        PolyCollection(list(flat), facecolors=shaded, edgecolors=edge, linewidths=line_width)
+    )
 
 
 def _axes_of(view: Floats) -> tuple[Floats, Floats, Floats]:
@@ -98,31 +136,3 @@ def _axes_of(view: Floats) -> tuple[Floats, Floats, Floats]:
 def _colours() -> Any:
     """Return colours that are light enough for edges and shades to be seen on them."""
     return ListedColormap(0.35 + 0.65 * colormaps["coolwarm"](np.linspace(0, 1, 256))[:, :3])
-
-
-def _draw(
-    path: Target,
-    flat: Floats,
-    colours: Floats,
-    limits: tuple[float, float],
-    facing: Floats,
-    label: str,
-) -> None:
-    figure = Figure(figsize=(_INCHES, 0.85 * _INCHES), layout="constrained")
-    axes = figure.add_subplot(aspect="equal")
-    axes.set_axis_off()
-    triangles: Any = PolyCollection(
-        list(flat), array=colours, cmap=_colours(), edgecolors=INK, linewidths=_LINE
-    )
-    # Parts of one field have the same colours.
-    triangles.set_clim(*limits)
-    axes.add_collection(triangles)
-    axes.autoscale_view()
-    figure.colorbar(triangles, ax=axes, label=label, fraction=0.03, pad=0.01)
-    # With the colours fixed by the values, make steep facets darker.
-    triangles.update_scalarmappable()
-    shaded = triangles.get_facecolors().copy()
-    shaded[:, :3] *= (_DARKEST + (1 - _DARKEST) * facing)[:, None]
-    triangles.set_array(None)
-    triangles.set_facecolor(shaded)
-    figure.savefig(path, dpi=_DPI)

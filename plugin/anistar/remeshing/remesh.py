@@ -18,7 +18,9 @@ from ..judging.certificate import keep_certificate
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..meshes.mesh_arrays import mesh_arrays
+from ..meshes.plotted import Plotted, Subject
 from ..metric import check_metric
+from ..metric.base.told import Told
 from ..objects import AnyMesh, as_mesh, made, metric_in, opened
 from .contact import check_curves, check_surfaces
 from .demand import check_demand
@@ -33,8 +35,8 @@ from .verdict import certificate_for
 METRIC = "metric"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Remeshed:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Remeshed(Plotted, Told):
     """A new mesh, the metric at its points, and the report.
 
     Attributes
@@ -52,6 +54,15 @@ class Remeshed:
     def to(self, like: AnyMesh) -> Any:
         """Return the mesh with its metric in another form, see `anistar.objects.made`."""
         return made(self.mesh, {METRIC: Field(self.metric)}, like)
+
+    def _subject(self) -> Subject:
+        return Subject(mesh=self.mesh, metric=self.metric, colour="quality")
+
+    def _figures(self) -> dict[str, Any]:
+        return self.report._figures()
+
+    def _drawing(self) -> str:
+        return self.mesh._drawing()
 
 
 def remesh(

@@ -10,6 +10,7 @@ from .._core import ConsistencyStop, StopReason
 from ..base.arrays import Floats
 from ..judging.certificate import Certificate, share_of
 from ..meshes.mesh import Mesh
+from ..metric.base.told import Told
 from ..metric.laws.refinement import Refinement
 from .bad_cells import BadCell, quality_bound, worst_cells
 from .fidelity import SurfaceDeviation, TagMeasure, shape_warnings
@@ -17,8 +18,8 @@ from .long_edges import LONG_EDGE, LongEdge, longest_edges
 from .verdict import agreement_text, verdict_of
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RemeshReport:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class RemeshReport(Told):
     """What `remesh` did and how good the result is.
 
     Attributes
@@ -116,6 +117,25 @@ class RemeshReport:
     warnings: tuple[str, ...]
     counts: dict[str, float]
     seconds: dict[str, float]
+
+    def _figures(self) -> dict[str, Any]:
+        figures = {
+            "points": self.n_points,
+            "cells": self.n_cells,
+            "edge_unit": self.statistics["edge_unit"],
+            "q_min": self.statistics["q_min"],
+            "star_ok": self.star_ok,
+            "seconds": sum(self.seconds.values()),
+        }
+        if not self.converged:
+            figures["stop_reason"] = self.stop_reason
+        if self.warnings:
+            figures["warnings"] = len(self.warnings)
+        return figures
+
+    def _table(self) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:
+        rows = [(t.name or t.tag, t.dim, t.before, t.after, t.change) for t in self.tags]
+        return ("tag", "dim", "before", "after", "change"), rows
 
     def as_dict(self) -> dict[str, Any]:
         """Return the report as JSON builtins."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from ..base.report import as_builtin
+from ..metric.base.told import Told
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +68,8 @@ class Coverage:
     max_distance: float
 
 
-@dataclass(frozen=True, slots=True)
-class TransferReport:
+@dataclass(frozen=True, slots=True, repr=False)
+class TransferReport(Told):
     """What a transfer did.
 
     Attributes
@@ -102,6 +103,20 @@ class TransferReport:
     unmatched_tags: tuple[int, ...]
     changes: dict[str, FieldChange]
     seconds: float
+
+    def _figures(self) -> dict[str, Any]:
+        names = ("method", "outside", "points_outside", "max_distance", "seconds")
+        return {name: getattr(self, name) for name in names}
+
+    def _table(self) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:
+        kinds = ("integral", "minimum", "maximum")
+        rows = [
+            (name, kind, before, after)
+            for name, change in self.changes.items()
+            for kind in kinds
+            for before, after in zip(*getattr(change, kind), strict=True)
+        ]
+        return ("field", "of the field", "before", "after"), rows
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""

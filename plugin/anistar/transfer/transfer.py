@@ -17,6 +17,7 @@ from ..base.settings import chosen
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric.base.given import AnyFields, given_fields
+from ..metric.base.told import Told
 from ..objects import AnyMesh, as_mesh, made, opened
 from .interpolation import Interpolator
 from .options import TransferOptions
@@ -32,12 +33,18 @@ from .values.labels import majority
 from .values.measure import cell_integrals
 
 
-@dataclass(frozen=True, eq=False)
-class Transferred:
+@dataclass(frozen=True, eq=False, repr=False)
+class Transferred(Told):
     """Fields on the target mesh, in the form they were given, and the report."""
 
     fields: dict[str, Any]
     report: TransferReport
+
+    def _figures(self) -> dict[str, Any]:
+        return {"fields": ", ".join(self.fields), **self.report._figures()}
+
+    def _table(self) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:
+        return self.report._table()
 
 
 @dataclass(frozen=True, eq=False)

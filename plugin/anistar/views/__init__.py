@@ -1,0 +1,1 @@
+"""Views of meshes in 2D and 3D: what is seen, and by which package it is drawn."""
