@@ -24,6 +24,9 @@ PICTURES = (
     "convergence.png",
 )
 
+#: Those of the demo in 3D.
+VOLUME_PICTURES = ("overview.png", "mesh_first.png", "mesh_last.png", "convergence.png")
+
 # Regular expressions of the names of the files that the demo leaves, in 2D or in 3D.
 DEMO_FILES = (
     re.escape(REPORT),

@@ -9,15 +9,16 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.arrays import Floats
+from .. import pictures
+from ..base.arrays import Bools, Floats
 from ..base.report import write_json
 from ..judging.interpolation_error import l2_error
-from ..loops.loop import Step, adapt_loop
+from ..loops.loop import Loop, Step, adapt_loop
 from ..loops.loop_options import LoopOptions
 from ..meshes.mesh import Mesh
 from ..remeshing.remesh import remesh
 from ..runs.series import item_of, write_series
-from .result import REPORT, Demo, DemoRow, order_of
+from .result import REPORT, VOLUME_PICTURES, Demo, DemoRow, columns_of, order_of
 
 Progress = Callable[[str], object]
 
@@ -27,6 +28,9 @@ REPEATS = 2
 # The front: a sphere of this radius around the origin, this steep.
 RADIUS, STEEPNESS = 0.7, 30.0
 BOXES = 8
+
+# Pictures show what has a smaller x.
+CUT = 0.45
 
 
 def front(points: Floats) -> Floats:
@@ -62,7 +66,7 @@ def run_volume_demo(
     complexities: Sequence[float] = COMPLEXITIES,
     progress: Progress = lambda stage: None,
 ) -> Demo:
-    """Run the demo and leave meshes, fields and the report in a folder.
+    """Run the demo and leave meshes, fields, pictures and the report in a folder.
 
     Parameters
     ----------
@@ -89,8 +93,8 @@ def run_volume_demo(
     for step in steps:
         rows.append(_row(step, coarse))
         progress(f"uniform at {step.complexity:g}")
-    files = write_series(place / "front.pvd", map(item_of, (loop.steps[0], *steps)))
-    progress("files")
+    files = _written(place, loop, steps, rows)
+    progress("files and pictures")
     demo = Demo(
         rows=tuple(rows),
         adapted_order=order_of(rows, "adapted", dim=3),
@@ -115,3 +119,30 @@ def _row(step: Step, coarse: Mesh) -> DemoRow:
         uniform_points=uniform.n_points,
         uniform_error=l2_error(uniform, front(uniform.points), front),
     )
+
+
+def _written(place: Path, loop: Loop, steps: Sequence[Step], rows: Sequence[DemoRow]) -> list[Path]:
+    first, last = loop.steps[0], steps[-1]
+    files = write_series(place / "front.pvd", map(item_of, (first, *steps)))
+    overview, first_mesh, last_mesh, convergence = (place / name for name in VOLUME_PICTURES)
+    pictures.volume_overview_picture(
+        overview,
+        [(step.mesh, step.fields["u"], _behind(step.mesh)) for step in (first, steps[0], last)],
+        label="u",
+    )
+    for path, step in ((first_mesh, first), (last_mesh, last)):
+        keep = _behind(step.mesh)
+        pictures.volume_picture(path, step.mesh, step.fields["u"], keep=keep, label="u")
+    curves = {
+        f"{kind} mesh": list(zip(*columns_of(rows, kind), strict=True))
+        for kind in ("uniform", "adapted")
+    }
+    pictures.convergence_picture(
+        convergence, curves, order=2 / 3, label="$L^2$ error against the exact front"
+    )
+    return [*files, *(place / name for name in VOLUME_PICTURES)]
+
+
+def _behind(mesh: Mesh) -> Bools:
+    """Return which cells lie behind a cut through the front, for who looks from large x."""
+    return np.asarray(mesh.points[mesh.cells].mean(axis=1)[:, 0] < CUT)

@@ -9,7 +9,7 @@ from .plane import (
     overview_picture,
     solution_picture,
 )
-from .volume import volume_picture
+from .volume import volume_overview_picture, volume_picture
 
 __all__ = [
     "bars_picture",
@@ -19,5 +19,6 @@ __all__ = [
     "metric_picture",
     "overview_picture",
     "solution_picture",
+    "volume_overview_picture",
     "volume_picture",
 ]

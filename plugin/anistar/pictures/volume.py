@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -65,23 +66,69 @@ def volume_picture(
     ValueError
         If the mesh is not 3D, if no cell is kept, or if one looks straight up or down.
     """
-    if mesh.dim != 3:
-        raise ValueError(f"pictures of volumes are of 3D meshes, not {mesh.dim}D")
-    cells = mesh.cells if keep is None else mesh.cells[np.asarray(keep, dtype=bool)]
-    if len(cells) == 0:
-        raise ValueError("no cell is kept, there is nothing to draw")
-    facets = boundary_facets(cells, mesh.n_points)
-    nodal = np.asarray(values, dtype=np.float64)
     figure = Figure(figsize=(_INCHES, 0.85 * _INCHES), layout="constrained")
-    axes = figure.add_subplot(aspect="equal")
-    axes.set_axis_off()
-    # Parts of one field have the same colours.
-    scale = ScalarMappable(Normalize(float(nodal.min()), float(nodal.max())), _colours())
-    colours = scale.to_rgba(nodal[facets].mean(axis=1))
-    paint(axes, mesh.points[facets], colours, np.asarray(view, dtype=np.float64))
-    axes.autoscale_view()
-    figure.colorbar(scale, ax=axes, label=label, fraction=0.03, pad=0.01)
+    axes = _bare_axes(figure, 1)
+    _draw_volumes(figure, axes, [(mesh, values, keep)], np.asarray(view, dtype=np.float64), label)
     save(figure, path)
+
+
+def volume_overview_picture(
+    path: Target,
+    volumes: Sequence[tuple[Mesh, ArrayLike, ArrayLike | None]],
+    *,
+    view: tuple[float, float, float] = VIEW,
+    label: str = "",
+) -> None:
+    """Draw several meshes beside each other as `volume_picture` does, in the same colours.
+
+    Parameters
+    ----------
+    path : path or binary file
+        A PNG, SVG or PDF file.
+    volumes : sequence of (Mesh, (n,) array, (m,) bool array or None)
+        Meshes with their fields, and which cells to show.
+    view, label
+        As in `volume_picture`.
+
+    Raises
+    ------
+    ValueError
+        As `volume_picture` does.
+    """
+    figure = Figure(figsize=(0.75 * _INCHES * len(volumes), 0.7 * _INCHES), layout="constrained")
+    axes = _bare_axes(figure, len(volumes))
+    _draw_volumes(figure, axes, volumes, np.asarray(view, dtype=np.float64), label)
+    save(figure, path)
+
+
+def _bare_axes(figure: Any, count: int) -> list[Any]:
+    found = list(np.atleast_1d(figure.subplots(1, count, subplot_kw={"aspect": "equal"})))
+    for axes in found:
+        axes.set_axis_off()
+    return found
+
+
+def _draw_volumes(
+    figure: Any,
+    places: Sequence[Any],
+    volumes: Sequence[tuple[Mesh, ArrayLike, ArrayLike | None]],
+    view: Floats,
+    label: str,
+) -> None:
+    fields = [np.asarray(values, dtype=np.float64) for _, values, _ in volumes]
+    # Parts of one field have the same colours.
+    limits = min(map(np.min, fields)), max(map(np.max, fields))
+    scale = ScalarMappable(Normalize(*map(float, limits)), _colours())
+    for axes, (mesh, _, keep), nodal in zip(places, volumes, fields, strict=True):
+        if mesh.dim != 3:
+            raise ValueError(f"pictures of volumes are of 3D meshes, not {mesh.dim}D")
+        cells = mesh.cells if keep is None else mesh.cells[np.asarray(keep, dtype=bool)]
+        if len(cells) == 0:
+            raise ValueError("no cell is kept, there is nothing to draw")
+        facets = boundary_facets(cells, mesh.n_points)
+        paint(axes, mesh.points[facets], scale.to_rgba(nodal[facets].mean(axis=1)), view)
+        axes.autoscale_view()
+    figure.colorbar(scale, ax=list(places), label=label, fraction=0.03, pad=0.01)
 
 
 def paint(

@@ -28,13 +28,19 @@ VIEW = (1.0, -1.3, 0.8)
 _WINDOW = (1200, 900)
 _BAR = {"vertical": True, "position_x": 0.88, "position_y": 0.2, "height": 0.6, "width": 0.06}
 
+# Of half the window.
+_ASIDE = 0.14
+
 # Share of the light that comes from everywhere: cuts are rough, and would be half black.
 _AMBIENT = 0.4
+
+# Names are thinner than surfaces.
+_DARKER = 0.75
 
 
 def draw(scene: Scene, *, edges: bool, path: Any, show: bool) -> Any:
     """Return a plotter with the scene, saved and shown where that is asked for."""
-    with _no_word_of_missing_screens():
+    with quietly_off_screen():
         plotter = pyvista.Plotter(off_screen=not show, window_size=list(_WINDOW))
         plotter.set_background("white")
         surface = pyvista.PolyData(scene.points, _faces(scene.triangles))
@@ -64,7 +70,7 @@ def _add_surface(plotter: Any, scene: Scene, surface: Any, edges: bool) -> None:
         surface.cell_data["colour"] = colours[scene.values.astype(int)]
         plotter.add_mesh(surface, scalars="colour", rgb=True, **look)
         shown = np.unique(np.r_[scene.values, scene.line_values[scene.line_values >= 0]])
-        _add_legend(plotter, scene, shown.astype(int), colours)
+        _add_legend(plotter, scene, shown.astype(np.int32))
         return
     data = surface.point_data if scene.on_points else surface.cell_data
     data[scene.label or "values"] = scene.values
@@ -76,12 +82,13 @@ def _add_surface(plotter: Any, scene: Scene, surface: Any, edges: bool) -> None:
     )
 
 
-def _add_legend(plotter: Any, scene: Scene, shown: Ints, colours: AnyArray) -> None:
-    entries = [[scene.categories[k], tuple(colours[k] / 255.0)] for k in shown]
-    size = (0.24, min(0.9, 0.04 * len(entries)))
-    legend = plotter.add_legend(entries, bcolor=None, face="rectangle", size=size)
-    for row in range(len(entries)):
-        legend.SetEntryColor(row, *(0.75 * colours[shown[row]] / 255.0))
+def _add_legend(plotter: Any, scene: Scene, shown: Ints) -> None:
+    """Name the categories that are seen, in their colours: VTK's own legend cuts names off."""
+    colours = _DARKER * colours_of_categories(len(scene.categories))
+    for row, k in enumerate(shown):
+        place = (_BAR["position_x"] - 0.03, 0.92 - 0.04 * row)
+        look: dict[str, Any] = {"font_size": 11, "color": tuple(colours[k])}
+        plotter.add_text(scene.categories[k], position=place, viewport=True, **look)
 
 
 def _add_lines(plotter: Any, scene: Scene) -> None:
@@ -101,9 +108,11 @@ def _look(plotter: Any, scene: Scene) -> None:
         plotter.view_xy()
         plotter.enable_parallel_projection()
         plotter.camera.tight(padding=0.05, adjust_render_window=False)
+        plotter.camera.zoom(0.85)
     else:
         plotter.view_vector(VIEW, viewup=(0.0, 0.0, 1.0))
         plotter.enable_anti_aliasing("ssaa")
+    plotter.camera.SetWindowCenter(_ASIDE, 0.0)  # beside the names or the bar
 
 
 def _faces(rows: Ints) -> AnyArray:
@@ -111,7 +120,7 @@ def _faces(rows: Ints) -> AnyArray:
 
 
 @contextmanager
-def _no_word_of_missing_screens() -> Iterator[None]:
+def quietly_off_screen() -> Iterator[None]:
     """Let VTK draw off the screen without a warning that there is none."""
     before = vtkLogger.GetCurrentVerbosityCutoff()
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)

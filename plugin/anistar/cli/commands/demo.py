@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     console.show_table(f"Errors against {against}", columns, rows)
     console.say(
         f"Observed order: {demo.adapted_order:.2f} adapted, {demo.uniform_order:.2f} uniform. "
-        f"Series and report in {folder} after {demo.seconds:.0f} s."
+        f"Series, pictures and report in {folder} after {demo.seconds:.0f} s."
     )
     return 0
 
