@@ -118,7 +118,7 @@ def _draw_volumes(
     fields = [np.asarray(values, dtype=np.float64) for _, values, _ in volumes]
     # Parts of one field have the same colours.
     limits = min(map(np.min, fields)), max(map(np.max, fields))
-    scale = ScalarMappable(Normalize(*map(float, limits)), _colours())
+    scale = ScalarMappable(Normalize(*map(float, limits)), volume_colours())
     for axes, (mesh, _, keep), nodal in zip(places, volumes, fields, strict=True):
         if mesh.dim != 3:
             raise ValueError(f"pictures of volumes are of 3D meshes, not {mesh.dim}D")
@@ -180,6 +180,6 @@ def _axes_of(view: Floats) -> tuple[Floats, Floats, Floats]:
     return across, np.cross(towards, across), towards
 
 
-def _colours() -> Any:
+def volume_colours() -> Any:
     """Return colours that are light enough for edges and shades to be seen on them."""
     return ListedColormap(0.35 + 0.65 * colormaps["coolwarm"](np.linspace(0, 1, 256))[:, :3])

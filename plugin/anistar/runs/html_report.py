@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..base.errors import FormatError
 from ..base.report import write_text
@@ -18,6 +18,7 @@ from ..formats import read
 from ..judging.certificate import rounded_down
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
+from ..meshes.plotted import Subject
 from ..pictures import (
     bars_picture,
     convergence_picture,
@@ -25,6 +26,9 @@ from ..pictures import (
     solution_picture,
     volume_picture,
 )
+from ..remeshing.concerns import Level, level_of
+from ..views.scene import kept_cells, scene
+from ..views.web_view import script, turning_figure
 from .folder import REPORT, SERIES
 from .series import member
 
@@ -46,6 +50,10 @@ details { margin: .6rem 0; border-top: 1px solid #e4e8ec; }
 summary { cursor: pointer; padding: .5rem 0; font-weight: 600; }
 .pair { display: grid; grid-template-columns: 1fr 1fr; gap: 1rem; }
 .wide { overflow-x: auto; }
+figure.turns img, figure.turns canvas { cursor: grab; }
+td.look { background: #fdf1c7 !important; }
+td.bad, p.bad { background: #f9d3cd !important; font-weight: 600; }
+p.bad { padding: .3rem .7rem; }
 @media (max-width: 45rem) { .pair { grid-template-columns: 1fr; } }
 """
 
@@ -95,6 +103,7 @@ def write_html_report(folder: str | os.PathLike[str], path: str | os.PathLike[st
             _iteration(step, *found, is_last=step is steps[-1])
             for step, found in zip(steps, meshes, strict=True)
         ),
+        script() if meshes[0][0].dim == 3 else "",
     ]
     write_text(path, _page(source.resolve().name, "\n".join(body)))
 
@@ -150,10 +159,10 @@ def _overview(steps: Sequence[Mapping[str, Any]]) -> str:
         figures = mesher.get("statistics", {})
         sizes = [step[name] for name in ("iteration", "complexity", "points", "cells")]
         quality = [
-            _percent(figures.get("edge_unit")),
-            figures.get("edge_max"),
-            figures.get("q_min"),
-            _percent(_stars(made)),
+            _judged("edge_unit", figures.get("edge_unit"), _percent),
+            _judged("edge_max", figures.get("edge_max")),
+            _judged("q_min", figures.get("q_min")),
+            _judged("star_ok", _stars(made), _percent),
         ]
         error = max(step["error"].values(), default=None)
         rows.append([*sizes, error, *quality, step["seconds"], made.get("seconds")])
@@ -190,15 +199,23 @@ def _pictures(mesh: Mesh, fields: Mapping[str, Field], verdict: str) -> str:
 
 def _volume_pictures(mesh: Mesh, fields: Mapping[str, Field], verdict: str) -> str:
     """Show the surface and what lies behind the middle in x."""
-    x = mesh.points[:, 0]
-    behind = x[mesh.cells].mean(axis=1) < (x.min() + x.max()) / 2
     shown = []
     for name, field in fields.items():
         if field.on == "points" and field.kind == "scalar":
-            draw = partial(volume_picture, mesh=mesh, values=field.values, label=name)
-            shown.append(_figure(draw, f"The mesh and the field {name}.{verdict}"))
-            shown.append(_figure(partial(draw, keep=behind), f"{name}, the half with small x."))
+            show = partial(_turning, Subject(mesh=mesh, fields=fields), name)
+            shown.append(show(None, f"The mesh and the field {name}.{verdict}"))
+            shown.append(show("x", f"{name}, the half with small x."))
     return f'<div class="pair">{"".join(shown)}</div>'
+
+
+def _turning(subject: Subject, name: str, clip: str | None, caption: str) -> str:
+    mesh, values = subject.mesh, subject.fields[name].values
+    seen = scene(subject, name, clip=clip)
+    keep = None if clip is None else kept_cells(mesh, clip)
+    file = io.BytesIO()
+    volume_picture(file, mesh, values, keep=keep, label=name)
+    limits = float(values.min()), float(values.max())
+    return turning_figure(seen, _address(file), caption, limits)
 
 
 def _histograms(figures: Mapping[str, Any]) -> str:
@@ -226,8 +243,9 @@ def _histograms(figures: Mapping[str, Any]) -> str:
 
 def _metric(ledger: Mapping[str, Any]) -> str:
     rows = [[s["name"], s["complexity"], s["remark"]] for s in ledger["stages"]]
+    kind = "" if ledger.get("reached", True) else ' class="bad"'
     return (
-        f"<h3>Metric</h3><p>{_text(ledger['message'])}</p>"
+        f"<h3>Metric</h3><p{kind}>{_text(ledger['message'])}</p>"
         f"{_table(['stage', 'complexity', 'remark'], rows)}"
     )
 
@@ -246,16 +264,21 @@ def _verdict(made: Mapping[str, Any] | None) -> str:
 
 def _mesher(mesher: Mapping[str, Any]) -> str:
     said = [f"stopped: {mesher['stop_reason']}", f"agreement: {mesher['agreement']}"]
-    kept = ("dim", "before", "after", "change", "change_from_smooth")
-    tags = [[tag["name"] or str(tag["tag"]), *(tag[key] for key in kept)] for tag in mesher["tags"]]
+    tags = [_tag_row(tag) for tag in mesher["tags"]]
     columns = ["tag", "dimension", "before", "after", "change", "from the smooth shape"]
-    warnings = "".join(f"<p><strong>{_text(line)}</strong></p>" for line in mesher["warnings"])
+    warnings = "".join(f'<p class="bad">{_text(line)}</p>' for line in mesher["warnings"])
     phases = [[phase, seconds] for phase, seconds in mesher["seconds"].items()]
     return (
         f"<h3>Mesher</h3><p>{_text('; '.join(said))}</p>{warnings}"
         f"{_table(columns, tags)}"
         f"{_table(['phase', 'seconds'], phases)}"
     )
+
+
+def _tag_row(tag: Mapping[str, Any]) -> list[Any]:
+    given = [tag[key] for key in ("dim", "before", "after")]
+    changes = [_judged("change", tag[key]) for key in ("change", "change_from_smooth")]
+    return [tag["name"] or str(tag["tag"]), *given, *changes]
 
 
 def _transfer(carried: Mapping[str, Any]) -> str:
@@ -281,19 +304,38 @@ def _components(name: str, change: Mapping[str, Any]) -> list[str]:
 def _figure(draw: Callable[[io.BytesIO], object], caption: str) -> str:
     file = io.BytesIO()
     draw(file)
-    data = base64.b64encode(file.getvalue()).decode("ascii")
     return (
-        f'<figure><img alt="{_text(caption)}" src="data:image/png;base64,{data}">'
+        f'<figure><img alt="{_text(caption)}" src="{_address(file)}">'
         f"<figcaption>{_text(caption)}</figcaption></figure>"
     )
 
 
+def _address(file: io.BytesIO) -> str:
+    """Return the address of a PNG picture that is in the page itself."""
+    return "data:image/png;base64," + base64.b64encode(file.getvalue()).decode("ascii")
+
+
 def _table(columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
     head = "".join(f"<th>{_text(column)}</th>" for column in columns)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{_text(value)}</td>" for value in row) + "</tr>" for row in rows
-    )
+    body = "".join(f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+class _Judged(NamedTuple):
+    """A figure that may be worth a look, or bad."""
+
+    value: Any
+    level: Level
+
+
+def _judged(name: str, value: float | None, told: Callable[[Any], Any] = lambda it: it) -> _Judged:
+    return _Judged(told(value), level_of(name, value))
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, _Judged) and value.level:
+        return f'<td class="{value.level}">{_text(value.value)}</td>'
+    return f"<td>{_text(value.value if isinstance(value, _Judged) else value)}</td>"
 
 
 def _text(value: Any) -> str:

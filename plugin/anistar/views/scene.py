@@ -81,7 +81,7 @@ def scene(
     """Return what is seen of a mesh; for the parameters see `Plotted.plot`."""
     mesh = subject.mesh
     colours = _colours(subject, subject.colour if colour is None else colour)
-    kept = np.flatnonzero(_kept(mesh, clip, origin))
+    kept = np.flatnonzero(kept_cells(mesh, clip, origin))
     if len(kept) == 0:
         raise ValueError("the cut takes the whole mesh away: move its origin")
     triangles, owners, facets = _surface(mesh, kept)
@@ -109,7 +109,9 @@ def scene(
     )
 
 
-def _kept(mesh: Mesh, clip: str | Sequence[float] | None, origin: Sequence[float] | None) -> Bools:
+def kept_cells(
+    mesh: Mesh, clip: str | Sequence[float] | None, origin: Sequence[float] | None = None
+) -> Bools:
     """Return which cells (m,) lie behind the cut."""
     if clip is None:
         if origin is not None:
