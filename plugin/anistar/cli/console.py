@@ -85,10 +85,10 @@ def say_replaced(paths: Sequence[str], by: str, *, beside_json: bool) -> None:
         note(f"{' and '.join(paths)} {verb} replaced by {by}", beside_json=beside_json)
 
 
-def say_forecast(expected: Forecast, *, beside_json: bool) -> None:
+def say_forecast(expected: Forecast, *, beside_json: bool, of: str = "mesh") -> None:
     """Tell what long work will take, before it begins."""
     if expected.seconds >= SECONDS_WORTH_TELLING:
-        note(f"expected: {expected}", beside_json=beside_json)
+        note(f"expected {of}: {expected}", beside_json=beside_json)
 
 
 def _cell(value: Any) -> Text | str:

@@ -349,7 +349,7 @@ def adapt_to(
         carried = transfer(mesh, fields, done.mesh, options.transfer)
         line.enter("certificate")
         stars = _judged(done, options.remesh)
-        learn(mesh.dim, done.mesh.n_points, (time.perf_counter() - known) / (1 + corrections))
+        learn(mesh.dim, expected.vertices, (time.perf_counter() - known) / (1 + corrections))
     report = AdaptReport(
         metric_fields=names,
         metric=ledger,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -12,7 +13,13 @@ import numpy as np
 from ..base.report import attributes
 from ..meshes.mesh import Mesh
 from ..metric import Estimate
-from ..remeshing.demand import BYTES_PER_VERTEX, CELLS_PER_VERTEX, bounded_vertices, told_bytes
+from ..remeshing.demand import (
+    BYTES_PER_VERTEX,
+    CELLS_PER_VERTEX,
+    bounded_vertices,
+    told_bytes,
+    vertices_for,
+)
 from ..remeshing.options import RemeshOptions
 from ..remeshing.remesh import remesh
 
@@ -87,8 +94,29 @@ def forecast(estimate: Estimate, dim: int, options: RemeshOptions) -> Forecast:
     return Forecast(vertices=vertices, cells=cells, memory=memory, seconds=seconds)
 
 
-def learn(dim: int, vertices: int, seconds: float) -> None:
-    """Take what a mesh has taken for the speed of this machine, if it was worth a probe."""
+def forecast_of_targets(
+    complexities: Iterable[float], dim: int, options: RemeshOptions
+) -> Forecast:
+    """Return what the largest of several meshes takes, in the time of all of them together.
+
+    Parameters
+    ----------
+    complexities : iterable of float
+        Targets, at least one.
+    dim : int
+    options : RemeshOptions
+    """
+    estimates = [
+        Estimate(vertices=n, elements=n * CELLS_PER_VERTEX[dim], memory=n * BYTES_PER_VERTEX[dim])
+        for n in (vertices_for(target, dim) for target in complexities)
+    ]
+    each = [forecast(estimate, dim, options) for estimate in estimates]
+    largest = max(each, key=lambda one: one.vertices)
+    return replace(largest, seconds=sum(one.seconds for one in each))
+
+
+def learn(dim: int, vertices: float, seconds: float) -> None:
+    """Take the time of a mesh, of so many expected vertices, for the speed of this machine."""
     if seconds > WORTH_A_PROBE:
         _learned[dim] = seconds / (vertices * SECONDS_PER_VERTEX[dim])
 

@@ -51,6 +51,7 @@ summary { cursor: pointer; padding: .5rem 0; font-weight: 600; }
 .pair { display: grid; grid-template-columns: 1fr 1fr; gap: 1rem; }
 .wide { overflow-x: auto; }
 figure.turns img, figure.turns canvas { cursor: grab; }
+canvas:focus { outline: 1px solid #9aa7b4; }
 td.look { background: #fdf1c7 !important; }
 td.bad, p.bad { background: #f9d3cd !important; font-weight: 600; }
 p.bad { padding: .3rem .7rem; }
@@ -177,6 +178,7 @@ def _iteration(
     if made is not None:
         parts += [
             _histograms(made["remesh"]["statistics"]),
+            _expected(made, step["points"]),
             _metric(made["metric"]),
             _mesher(made["remesh"]),
             _transfer(made["transfer"]),
@@ -238,6 +240,17 @@ def _histograms(figures: Mapping[str, Any]) -> str:
             f"Cells: mean {figures['q_mean']:.3g}, worst {figures['q_min']:.3g}.",
         )
         + "</div>"
+    )
+
+
+def _expected(made: Mapping[str, Any], points: int) -> str:
+    """Return what was foretold beside what came; earlier versions foretold nothing."""
+    if "forecast" not in made:
+        return ""
+    told = made["forecast"]
+    return (
+        f'<p class="muted">Expected {told["vertices"]:,.0f} points in {told["seconds"]:.2g} s, '
+        f"made {points:,} in {made['seconds']:.2g} s, with the metric.</p>"
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from ...base.errors import FormatError
 from ...base.report import as_builtin
 from ...judging.certificate import rounded_down
+from ...loops.forecast import forecast_of_targets
 from ...loops.loop import Loop, LoopError, Step, adapt_loop
 from ...loops.loop_options import LoopOptions
 from ...meshes.mesh import Mesh
@@ -90,6 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
     solve.require_command()
     with folder.locked():
         finished = folder.load() if arguments.resume else _begun(arguments, folder)
+        _foretell(options, mesh.dim, arguments)
         solve.count = len(finished)
         first = finished[0].mesh if finished else mesh
         loop = _looped(solve, first, options, given.geometry, folder=folder)
@@ -105,6 +107,15 @@ def _begun(arguments: argparse.Namespace, folder: RunFolder) -> list[Step]:
     removed = folder.begin(force=arguments.force, keep=[arguments.input])
     console.say_removed(removed, folder.folder, beside_json=arguments.json)
     return []
+
+
+def _foretell(options: LoopOptions, dim: int, arguments: argparse.Namespace) -> None:
+    """Tell what the meshes that are sure to be made will take."""
+    targets = options.sure_complexities(dim)
+    if targets and not arguments.quiet:
+        expected = forecast_of_targets(targets, dim, options.adapt.remesh)
+        of = "largest mesh, and time of all"
+        console.say_forecast(expected, beside_json=arguments.json, of=of)
 
 
 def _looped(
