@@ -43,6 +43,7 @@ PACKAGE_ROOMS = [
     {"formats"},
     {"judging", "transfer"},
     {"pictures", "remeshing"},
+    {"views"},
     {"loops"},
     {"adapters", "runs"},
     {"demo"},

@@ -75,6 +75,24 @@ def test_the_code_of_the_page_on_recovery_runs():
     assert names["ledger"].reached
 
 
+def test_the_code_of_the_page_on_seeing_prints_a_line_and_leaves_pictures(
+    tmp_path, monkeypatch, capsys
+):
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    anistar.write("in.vtu", square(8))
+    code = "".join(code_blocks("docs/how-to/seeing.md", "python"))
+    names = {}
+    exec(code.replace("path=", 'backend="matplotlib", path='), names)
+    assert anistar.validate(names["done"].mesh, square(8)) == []
+    first, second = capsys.readouterr().out.splitlines()
+    assert first.startswith("Adapted(points=")
+    assert second.startswith("about ")
+    sizes = {path.name: path.stat().st_size for path in tmp_path.glob("*.png")}
+    assert sizes.keys() == {"tags.png", "u.png", "quality.png", "certificate.png"}
+    assert min(sizes.values()) > 10_000
+
+
 def test_the_pipeline_of_the_page_on_vtk_adapts_a_file(tmp_path):
     pytest.importorskip("vtkmodules")
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader

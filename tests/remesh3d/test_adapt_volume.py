@@ -56,4 +56,7 @@ def test_the_demo_in_3d_gains_over_uniform_meshes(tmp_path):
     demo = run_volume_demo(tmp_path, complexities=(200.0, 400.0))
     assert all(row.gain > 1 for row in demo.rows)
     assert all(path.exists() for path in demo.files)
+    pictures = {path.name: path.stat().st_size for path in demo.files if path.suffix == ".png"}
+    assert pictures.keys() == {"overview.png", "mesh_first.png", "mesh_last.png", "convergence.png"}
+    assert min(pictures.values()) > 10_000
     assert json.loads((tmp_path / "report.json").read_text())["rows"]

@@ -5,14 +5,11 @@ from __future__ import annotations
 import importlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-
-if TYPE_CHECKING:
-    from .mesh import Mesh
 
 Backend = Literal["pyvista", "matplotlib"]
 
@@ -24,6 +21,7 @@ class Subject:
     Attributes
     ----------
     mesh : Mesh
+        Which is itself something to plot, so that its class is not known here.
     fields : mapping of str to Field or array
     metric : (n, d, d) float64 or None
         At its points.
@@ -32,7 +30,7 @@ class Subject:
         What it is coloured by unless something else is asked for.
     """
 
-    mesh: Mesh
+    mesh: Any
     fields: Mapping[str, Any] = field(default_factory=dict)
     metric: Floats | None = None
     certificate: Any = None

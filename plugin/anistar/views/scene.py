@@ -79,7 +79,7 @@ def scene(
     origin: Sequence[float] | None = None,
 ) -> Scene:
     """Return what is seen of a mesh; for the parameters see `Plotted.plot`."""
-    mesh = subject.mesh
+    mesh: Mesh = subject.mesh
     colours = _colours(subject, subject.colour if colour is None else colour)
     kept = np.flatnonzero(kept_cells(mesh, clip, origin))
     if len(kept) == 0:
