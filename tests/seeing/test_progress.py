@@ -50,7 +50,7 @@ def drawn(monkeypatch):
             frames.append("left")
 
         def draw(self, rows):
-            frames.append([(row.name, row.phase, row.steps) for row in rows])
+            frames.append([(row.name, row.phase, row.steps or row.note) for row in rows])
 
     monkeypatch.setattr(display, "SECONDS_BEFORE_DISPLAY", 0.0)
     monkeypatch.setattr(display, "SECONDS_BETWEEN_FRAMES", 0.001)
@@ -129,6 +129,9 @@ def test_nested_calls_share_one_display_that_names_the_phases(drawn):
     assert {name for name, _, _ in rows} >= {"loop", "adapt", "remesh"}
     assert {phase for name, phase, _ in rows if name == "remesh"} & {"size", "shape", "agreement"}
     assert {steps for name, _, steps in rows if name == "loop"} >= {"0 of 3", "2 of 3"}
+    told = {note for name, _, note in rows if name == "remesh" and note}
+    points = {int(note.removesuffix(" points").replace(",", "")) for note in told}
+    assert max(points) == pytest.approx(loop.steps[-1].mesh.n_points, rel=0.1)
 
 
 def test_the_display_changes_no_byte_and_leaves_the_callback_of_the_user(drawn, monkeypatch):

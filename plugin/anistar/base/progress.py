@@ -20,6 +20,10 @@ SECONDS_BETWEEN_FRAMES = 0.125
 ENVIRONMENT = "ANISTAR_PROGRESS"
 
 Callback = Callable[[str, float], object]
+"""``callback(phase, fraction)``, as the user gives it."""
+
+CoreCallback = Callable[[str, float, int], object]
+"""The same with the number of vertices, as the core calls it."""
 
 _asked: bool | None = None
 _lock = threading.Lock()
@@ -94,16 +98,18 @@ class Task:
         self.steps += 1
         self.note = note
 
-    def callback(self, given: Callback | None) -> Callback | None:
+    def callback(self, given: Callback | None) -> CoreCallback | None:
         """Return what a phase is to call now and then: `given`, and the display where there is one.
 
         None where nobody wants to know.
         """
-        if not self.is_shown:
-            return given
+        if not self.is_shown and given is None:
+            return None
 
-        def told(phase: str, fraction: float) -> None:
+        def told(phase: str, fraction: float, n_vertices: int) -> None:
             self.enter(phase, fraction)
+            if n_vertices:
+                self.note = f"{n_vertices:,} points"
             if given is not None:
                 given(phase, fraction)
 

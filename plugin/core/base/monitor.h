@@ -17,7 +17,8 @@ struct BudgetSpent {};
 /// Asked now and then by every long loop.
 class Monitor {
 public:
-  using Progress = std::function<void(const std::string &phase, double fraction)>;
+  /// Phase, how far it is, and vertices of the mesh, 0 while that is not known.
+  using Progress = std::function<void(const std::string &, double, std::size_t)>;
   using Clock = std::chrono::steady_clock;
 
   Monitor(Progress progress, std::size_t max_vertices, double max_seconds)
@@ -31,6 +32,8 @@ public:
   }
   /// @returns false when the phase must end; cheap enough for every iteration.
   [[nodiscard]] bool keep_going(std::size_t n_vertices, double fraction) {
+    if (n_vertices > 0)
+      n_vertices_ = n_vertices;
     if (n_vertices >= max_vertices_)
       reason_ = StopReason::max_vertices;
     if (++calls_ % calls_between_glances == 0 && elapsed() > next_look_)
@@ -53,6 +56,8 @@ public:
     next_look_ = elapsed() + seconds_between_looks;
     return reason_ == StopReason::finished;
   }
+  /// Notes how large the mesh is, which the user hears of at the next look.
+  void note_size(std::size_t n_vertices) { n_vertices_ = n_vertices; }
   /// Looks at the clock alone: after what may take long each time, as the user's own
   /// functions do.
   void note_time() {
@@ -81,12 +86,13 @@ private:
   std::size_t calls_ = 0;
   double next_look_ = 0;
   double told_ = 0; ///< of the phase
+  std::size_t n_vertices_ = 0;
   StopReason reason_ = StopReason::finished;
 
   void tell(double fraction) {
     told_ = fraction;
     if (progress_)
-      progress_(phase_, fraction);
+      progress_(phase_, fraction, n_vertices_);
   }
 };
 

@@ -18,12 +18,12 @@ inline void look_for_signals() {
 /// in the user's callback, unwinds the core. A handle, not an object: it is
 /// copied and destroyed while the GIL is released.
 [[nodiscard]] inline Monitor::Progress progress_of(nanobind::handle callback) {
-  return [callback](const std::string &phase, double fraction) {
+  return [callback](const std::string &phase, double fraction, std::size_t n_vertices) {
     nanobind::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() != 0)
       throw nanobind::python_error();
     if (!callback.is_none())
-      callback(phase.c_str(), fraction);
+      callback(phase.c_str(), fraction, n_vertices);
   };
 }
 

@@ -140,6 +140,7 @@ private:
 GrowthRound grow_once(Volume &volume, const Run &run, PassLog &log, CurveOrder &order,
                       const LengthSteps &steps) {
   const auto n_vertices = [&] { return static_cast<double>(volume.n_vertices()); };
+  run.monitor.note_size(volume.n_vertices());
   GrowthRound round{};
   round.before = n_vertices();
   round.splits = static_cast<double>(split(volume, run, log,
@@ -229,6 +230,7 @@ Shaping attempt(Volume start, Keeping keeping, const Run &run, Stopwatch &watch)
   watch.phase("size");
   volume.state.kept_quality = keeping == Keeping::always ? made.kept : 0;
   grow(volume, run, log);
+  run.monitor.note_size(volume.n_vertices());
   watch.phase("shape");
   volume.state.kept_quality = made.kept;
   shape(volume, run, log, made.kept);
