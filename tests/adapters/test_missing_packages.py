@@ -106,3 +106,16 @@ def test_everything_else_works_without_any_optional_package(tmp_path):
     said = "".join(done.stdout.split())  # the table breaks lines
     for extra in OPTIONAL.values():
         assert "".join(install_command(extra).split()) in said
+
+
+
+@pytest.mark.parametrize(
+    "words", [["convert", "in.vtu", "out.med"], ["convert", "in.med", "a.vtu"]]
+)
+def test_files_in_hdf5_say_what_reads_them(tmp_path, words):
+    anistar.write(tmp_path / "in.vtu", square(2))
+    (tmp_path / "in.med").write_bytes(b"")
+    done = without("h5py", CALL, *words, cwd=tmp_path)
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert f"h5py is missing: {sys.executable} -m pip install h5py" in line

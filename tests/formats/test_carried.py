@@ -14,8 +14,6 @@ from anistar.meshes.fields import as_fields
 from anistar.meshes.validation import validate
 
 PAGE = "docs/file-formats.md"
-ALIKE = {".pvd": ".vtu", ".xmf": ".xdmf"}
-"""Columns of the page that stand for two suffixes."""
 
 
 def rich(dim):
@@ -69,7 +67,11 @@ def came_back(mesh, fields, again, back):
         return told(again) in (told(mesh), told(Mesh(**bare)))
 
     def has_field(name):
-        return name in back and np.array_equal(back[name].values, fields[name].values)
+        return (
+            name in back
+            and back[name].kind == fields[name].kind
+            and np.array_equal(back[name].values, fields[name].values)
+        )
 
     kept = {
         "height": again.z == mesh.z,

@@ -17,21 +17,25 @@ from ..base.errors import FormatError
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..objects import AnyMesh, Content, Form, made, opened, register
-from . import inp_reader, meshio_writer, su2_reader, su2_writer, xdmf_reader
+from . import inp_reader, med_reader, meshio_writer, su2_reader, su2_writer
 from .carried import holdable, losses
 from .content.assembly import ReadReport, assembled
 from .content.export import exported
 from .content.raw import RawMesh
+from .content.series import Series, numbered
 from .gmsh import reader as gmsh_reader
 from .gmsh import writer as gmsh_writer
 from .medit import files as medit_files
+from .parsing.reading import reading
 from .suffixes import SOLUTIONS, suffix_of
-from .vtk import legacy_reader, vtu_reader, vtu_writer
+from .vtk import legacy_reader, pvd, vtu_reader, vtu_writer
+from .xdmf import reader as xdmf_reader
 
 __all__ = [
     "FormatError",
     "ReadReport",
     "holdable",
+    "instants",
     "is_known",
     "losses",
     "put",
@@ -50,24 +54,29 @@ _READERS: dict[str, Callable[[Path], RawMesh]] = {
     ".mesh": medit_files.read_mesh,
     ".meshb": medit_files.read_mesh,
     ".inp": inp_reader.read,
+    ".med": med_reader.read,
     ".msh": gmsh_reader.read,
     ".su2": su2_reader.read,
     ".vtk": legacy_reader.read,
     ".vtu": vtu_reader.read,
-    ".xdmf": xdmf_reader.read,
-    ".xmf": xdmf_reader.read,
+}
+_SERIES: dict[str, Callable[[Path], Series]] = {
+    ".pvd": pvd.series,
+    ".xdmf": xdmf_reader.series,
+    ".xmf": xdmf_reader.series,
 }
 _WRITERS: dict[str, Callable[[Path, Mesh, Mapping[str, Field]], None]] = {
     ".mesh": medit_files.write_mesh,
     ".meshb": medit_files.write_mesh,
     ".msh": gmsh_writer.write,
+    ".pvd": pvd.write,
     ".su2": su2_writer.write,
     ".vtu": vtu_writer.write,
 }
 METRIC = "metric"
 
 
-def read(path: PathLike, *, like: AnyMesh | None = None) -> Any:
+def read(path: PathLike, *, like: AnyMesh | None = None, instant: int | None = None) -> Any:
     """Read a mesh and its fields.
 
     Single inverted cells are turned, points without a cell dropped, quadrilaterals, hexahedra,
@@ -80,9 +89,12 @@ def read(path: PathLike, *, like: AnyMesh | None = None) -> Any:
     path : path
         Medit (`.mesh .meshb`, with the fields of a `.sol` or `.solb` of the same name), Gmsh
         (`.msh`), VTK (`.vtu`, legacy `.vtk`), XDMF with its numbers inside (`.xdmf .xmf`), SU2
-        (`.su2`) or Abaqus (`.inp`).
+        (`.su2`) or Abaqus (`.inp`); series of VTU files (`.pvd`) and of XDMF. A number
+        behind the path of a series chooses the instant: ``run.pvd:3``.
     like : object or str, optional
         An object of another form, or its name, such as ``"pyvista"``.
+    instant : int, optional
+        Which instant of a series, from 0, or from the end if negative; the last one by default.
 
     Returns
     -------
@@ -95,23 +107,50 @@ def read(path: PathLike, *, like: AnyMesh | None = None) -> Any:
     FormatError
         If the file is unreadable, truncated, or holds no valid mesh; names the file and why.
     """
-    mesh, fields, _ = read_with_report(path)
+    mesh, fields, _ = read_with_report(path, instant=instant)
     return (mesh, fields) if like is None else made(mesh, fields, like)
 
 
-def read_with_report(path: PathLike) -> tuple[Mesh, dict[str, Field], ReadReport]:
-    """Read a mesh and its fields, and tell what was changed to make them valid."""
-    path = Path(path)
+def read_with_report(
+    path: PathLike, *, instant: int | None = None
+) -> tuple[Mesh, dict[str, Field], ReadReport]:
+    """Read a mesh and its fields as `read`, and tell what was changed to make them valid."""
+    path, number = numbered(Path(path))
+    instant = number if instant is None else instant
+    _require_readable(path)
+    if suffix_of(path) in _SERIES:
+        found = _SERIES[suffix_of(path)](path)
+        with reading(path):
+            return assembled(found.chosen(instant), path)
+    if instant is not None:
+        raise FormatError(f"cannot read {path}: files {path.suffix} have no instants to choose")
+    return assembled(_READERS[suffix_of(path)](path), path)
+
+
+def instants(path: PathLike) -> tuple[float, ...]:
+    """Return the times in a series; that of a file which is none is 0.
+
+    Raises
+    ------
+    FormatError
+        If the file is unreadable.
+    """
+    path, _ = numbered(Path(path))
+    _require_readable(path)
+    return _SERIES[suffix_of(path)](path).times if suffix_of(path) in _SERIES else (0.0,)
+
+
+def _require_readable(path: Path) -> None:
+    """Raise if there is no such file, or none of a format that is read."""
     if suffix_of(path) in SOLUTIONS:
         raise FormatError(f"cannot read {path}: a solution file holds no mesh, give the mesh file")
     if not path.is_file():
         raise FormatError(f"cannot read {path}: no such file")
-    if suffix_of(path) not in _READERS:
+    if suffix_of(path) not in (*_READERS, *_SERIES):
         raise FormatError(
             f"cannot read {path}: files {path.suffix or 'without suffix'} are not read here; "
             "convert it to VTU or Gmsh first, for example with meshio or ParaView"
         )
-    return assembled(_READERS[suffix_of(path)](path), path)
 
 
 def write(

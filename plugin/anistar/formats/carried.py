@@ -84,11 +84,13 @@ _OF_FIELDS = _FIELDS | {"names of fields", "blanks in names", "labels", "large l
 _NAMES = frozenset({"names of cells", "names of facets", "names of ridges", "numbers of names"})
 
 CARRIED: dict[str, frozenset[str]] = {
+    ".med": ALL - {"numbers of names", "labels", "large labels"},
     ".mesh": ALL - {"full tensors", "large labels"},
     ".meshb": ALL
     - _NAMES
     - {"height", "full tensors", "names of fields", "blanks in names", "labels", "large labels"},
     ".msh": ALL - {"large labels"},
+    ".pvd": ALL,
     ".su2": frozenset({"tags of facets", "names of facets"}),
     ".vtk": ALL - _NAMES - {"blanks in names"},
     ".vtu": ALL,

@@ -10,16 +10,22 @@ import io
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from ..base.arrays import AnyArray
 from ..base.errors import FormatError
-from .content.raw import RawMesh
+from .content.raw import KIND_DIM, RawMesh
 from .content.tag_arrays import TAGS, refuse_reserved
+from .med_reader import LONGEST_GROUP
+from .parsing.hdf5 import library
 from .suffixes import suffix_of
 from .vtk.legacy_reader import OWN_TITLE
 
 _XDMF = (".xdmf", ".xmf")
+# Under which meshio looks for the families of MED.
+_FAMILIES = "cell_tags"
 
 
 def is_known(suffix: str) -> bool:
@@ -42,17 +48,65 @@ def write(temporary: Path, content: RawMesh, path: Path) -> None:
         options = {"data_format": "XML"}
     cell_data = {name: [block.data[name] for block in blocks] for name in blocks[0].data}
     cell_data[TAGS] = [np.asarray(block.tags) for block in blocks]
+    cells = [(block.kind, block.rows) for block in blocks]
     with _guarded(path, temporary):
         mesh = meshio.Mesh(
-            content.points,
-            [(block.kind, block.rows) for block in blocks],
-            point_data=content.point_data,
-            cell_data=cell_data,
+            content.points, cells, point_data=content.point_data, cell_data=cell_data
         )
-        meshio.write(temporary, mesh, **options)
+        if suffix_of(path) == ".med":
+            _write_med(temporary, mesh, content)
+        else:
+            meshio.write(temporary, mesh, **options)
     if suffix_of(path) == ".vtk":
         version, _, rest = temporary.read_bytes().split(b"\n", 2)
         temporary.write_bytes(b"\n".join([version, OWN_TITLE.encode(), rest]))
+
+
+def _write_med(temporary: Path, mesh: Any, content: RawMesh) -> None:
+    """Write the tags of a mesh as groups of MED, and all values as reals."""
+    h5py = library()
+    mesh.cell_tags, families = _families(content)
+    del mesh.cell_data[TAGS]
+    for name, arrays in mesh.cell_data.items():
+        mesh.cell_data[name] = [values.astype(np.float64) for values in arrays]
+    for name, values in mesh.point_data.items():
+        mesh.point_data[name] = values.astype(np.float64)
+    mesh.cell_data[_FAMILIES] = families
+    meshio.write(temporary, mesh, file_format="med")
+    with h5py.File(temporary, "a") as file:  # meshio spells letters beyond ASCII wrongly
+        for family in file["FAS/mesh"].get("ELEME", {}).values():
+            (name,) = mesh.cell_tags[int(family.attrs["NUM"])]
+            letters = name.encode()
+            if len(letters) > LONGEST_GROUP:
+                raise ValueError(f"a name in MED has {LONGEST_GROUP} bytes at most, {name!r} more")
+            padded = letters.ljust(LONGEST_GROUP, b"\0")
+            family["GRO/NOM"][0] = np.frombuffer(padded, np.int8)
+
+
+def _families(content: RawMesh) -> tuple[dict[int, list[str]], list[AnyArray]]:
+    """Return the groups of each family of MED, and the families of the elements of each block.
+
+    A family has the number of its tag with the sign turned, where no other one has that.
+    """
+    tags = {
+        (KIND_DIM[b.kind], int(tag))
+        for b in content.blocks
+        for tag in np.unique(np.asarray(b.tags))
+    }
+    # those without names have nothing but their number to be told by
+    ordered = sorted((key for key in tags if key[1]), key=lambda key: (key in content.names, key))
+    numbers: dict[tuple[int, int], int] = {}
+    for dim, tag in ordered:
+        is_named = (dim, tag) in content.names
+        taken = {abs(number) for number in numbers.values()}
+        is_free = tag > 0 and (not is_named or tag not in taken)
+        numbers[dim, tag] = -tag if is_free else -(1 + max({0, *taken, *(t for _, t in tags)}))
+    groups = {numbers[key]: [name] for key, name in content.names.items() if key in numbers}
+    of_elements = [
+        np.array([numbers.get((KIND_DIM[b.kind], tag), 0) for tag in np.asarray(b.tags).tolist()])
+        for b in content.blocks
+    ]
+    return groups, of_elements
 
 
 @contextlib.contextmanager

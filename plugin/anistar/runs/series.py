@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 from numpy.typing import ArrayLike
 
-from ..base.report import write_text
 from ..formats import write
+from ..formats.vtk.pvd import member, require_pvd, write_index
 from ..judging.cell_arrays import certificate_arrays
 from ..judging.certificate import known_certificate
 from ..loops.loop import Step
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
+
+__all__ = ["SeriesWriter", "item_of", "member", "write_index", "write_series"]
 
 Item = tuple[Mesh, Mapping[str, Field | ArrayLike]]
 
@@ -45,7 +45,7 @@ def write_series(path: str | os.PathLike[str], items: Iterable[Item]) -> list[Pa
         If `path` does not end in .pvd.
     """
     index = Path(path)
-    _require_pvd(index)
+    require_pvd(index)
     written: list[Path] = []
     for number, (mesh, fields) in enumerate(items):
         written.append(member(index, number))
@@ -59,12 +59,6 @@ def item_of(step: Step) -> Item:
     if step.metric is not None:
         fields |= certificate_arrays(known_certificate(step.mesh, step.metric))
     return step.mesh, fields
-
-
-def member(path: str | os.PathLike[str], number: int) -> Path:
-    """Return the path of one mesh of the series that a PVD file lists."""
-    index = Path(path)
-    return index.with_name(f"{index.stem}_{number:03d}.vtu")
 
 
 class SeriesWriter:
@@ -83,7 +77,7 @@ class SeriesWriter:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
-        _require_pvd(self.path)
+        require_pvd(self.path)
         self._times: list[float] = []
 
     def add(self, time: float, mesh: Mesh, fields: Mapping[str, Field | ArrayLike]) -> None:
@@ -91,31 +85,3 @@ class SeriesWriter:
         write(member(self.path, len(self._times)), mesh, fields)
         self._times.append(float(time))
         write_index(self.path, self._times)
-
-
-def write_index(path: str | os.PathLike[str], times: Sequence[float]) -> Path:
-    """Write the PVD file of a series with one mesh for each time, and remove members beyond."""
-    index = Path(path)
-    _require_pvd(index)
-    _remove_stale(index, keep=len(times))
-    lines = [
-        f"    <DataSet timestep={quoteattr(str(time))} file={quoteattr(member(index, i).name)}/>"
-        for i, time in enumerate(times)
-    ]
-    header = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">']
-    text = "\n".join([*header, "  <Collection>", *lines, "  </Collection>", "</VTKFile>", ""])
-    write_text(index, text)
-    return index
-
-
-def _require_pvd(index: Path) -> None:
-    if index.suffix != ".pvd":
-        raise ValueError(f"a series is written to a .pvd file, not {index.name!r}")
-
-
-def _remove_stale(index: Path, keep: int) -> None:
-    pattern = re.compile(re.escape(index.stem) + r"_(\d{3,})\.vtu")
-    for path in index.parent.iterdir():
-        match = pattern.fullmatch(path.name)
-        if match and int(match.group(1)) >= keep:
-            path.unlink()

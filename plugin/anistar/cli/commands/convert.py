@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import os
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from ...formats import holdable, losses, put, read_with_report
+from ...formats import holdable, instants, losses, put, read, read_with_report
+from ...formats.suffixes import suffix_of
+from ...runs.series import SeriesWriter
 from .. import console
 from ..files import replaced_inputs, writable
 
@@ -27,6 +30,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output, is_mesh=False)
+    times = instants(arguments.input)
+    if suffix_of(output) == ".pvd" and len(times) > 1 and Path(arguments.input).is_file():
+        return _convert_series(arguments, output, times)
     mesh, fields, report = read_with_report(arguments.input)
     lost = losses(mesh, fields, output)
     kept = holdable(mesh, fields, output)
@@ -43,6 +49,23 @@ def run(arguments: argparse.Namespace) -> int:
     verb = "would have" if arguments.dry_run else "has"
     console.say(f"{output} {verb} {mesh.n_points} points, {mesh.n_cells} cells")
     _show(lost, "would be lost" if arguments.dry_run else "lost")
+    return 0
+
+
+def _convert_series(arguments: argparse.Namespace, output: Path, times: Sequence[float]) -> int:
+    """Write every instant of a series; VTU has a place for everything in them."""
+    if os.path.realpath(output) == os.path.realpath(arguments.input):
+        raise ValueError(f"cannot write the series {output} over itself")
+    if not arguments.dry_run:
+        writer = SeriesWriter(output)
+        for number, time in enumerate(times):
+            writer.add(time, *read(arguments.input, instant=number))
+    verb = "would have" if arguments.dry_run else "has"
+    if arguments.json:
+        console.show_json({"path": str(output), "times": list(times), "lost": []})
+    else:
+        console.say(f"{output} {verb} {len(times)} instants")
+        _show([], "would be lost" if arguments.dry_run else "lost")
     return 0
 
 

@@ -1,27 +1,17 @@
-"""XDMF with the numbers inside: one grid of triangles, tetrahedra, or a mixture.
-
-Numbers in other files (HDF5, raw binary) are not followed: a file read here opens no other.
-
-References
-----------
-XDMF, "XDMF Model and Format", versions 2 and 3.
-"""
+"""A grid of XDMF: triangles, tetrahedra, what is split into them, or a mixture, and its fields."""
 
 from __future__ import annotations
 
-import math
-from pathlib import Path
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ..base.arrays import AnyArray
-from .content.kinds import KINDS
-from .content.raw import Block, RawMesh
-from .content.tag_arrays import read_tagged
-from .parsing.rows import leading_rows
-from .parsing.text_rows import parsed
-from .parsing.xml_tree import attribute, only_child, root_of
+from ...base.arrays import AnyArray
+from ..content.kinds import KINDS
+from ..content.raw import Block, RawMesh
+from ..parsing.rows import leading_rows
+from ..parsing.xml_tree import attribute, only_child
+from .items import Items
 
 # XDMF's numbers of types in a mixture, and their names where all cells are of one.
 _MIXED = {
@@ -60,39 +50,22 @@ _UNIFORM = {
     "hexahedron_27": "hexahedron27",
 }
 _DIMENSIONS = {"XY": 2, "XYZ": 3}
-_IGNORED = ("Time", "Information")
 _WITH_COUNT = (1, 2)
-_MOST_DIMENSIONS = 3
 
 
-def read(path: Path) -> RawMesh:
-    """Read a mesh with its tags and fields.
+def content_of(grid: Element, items: Items) -> RawMesh:
+    """Return the mesh of a grid with its fields.
 
     Raises
     ------
-    FormatError
-        If the file is damaged, holds another kind of grid, or has its numbers elsewhere.
+    ValueError
+        If it is damaged.
     """
-    return read_tagged(path, _mesh)
-
-
-def _mesh(data: bytes) -> RawMesh:
-    root = root_of(data)
-    grids = root.findall("Domain/Grid")
-    if root.tag != "Xdmf" or len(grids) != 1:
-        raise ValueError(f"it has {len(grids)} grids: one mesh is read, without a time series")
-    grid = grids[0]
-    if grid.get("GridType", "Uniform") != "Uniform":
-        raise ValueError(f"its grid is {grid.get('GridType')!r}: one mesh is read, no collection")
-    for child in grid:
-        if child.tag not in ("Topology", "Geometry", "Attribute", *_IGNORED):
-            raise ValueError(f"the element {child.tag} in Grid is not known")
-    points = _points(only_child(grid, "Geometry"))
-    kinds, rows = _cells(only_child(grid, "Topology"))
+    points = _points(only_child(grid, "Geometry"), items)
+    kinds, rows = _cells(only_child(grid, "Topology"), items)
     n_cells = sum(len(part) for part in rows)
-    on_points, on_cells = (
-        _data(grid, center, length) for center, length in (("Node", len(points)), ("Cell", n_cells))
-    )
+    on_points = _data(grid, "Node", len(points), items)
+    on_cells = _data(grid, "Cell", n_cells, items)
     starts = np.cumsum([0, *(len(part) for part in rows)])
     blocks = []
     for kind in dict.fromkeys(kinds):
@@ -103,21 +76,21 @@ def _mesh(data: bytes) -> RawMesh:
     return RawMesh(points, blocks, point_data=on_points, six="xdmf")
 
 
-def _points(geometry: Element) -> AnyArray:
+def _points(geometry: Element, items: Items) -> AnyArray:
     kind = geometry.get("GeometryType", geometry.get("Type", "XYZ"))
     if kind not in _DIMENSIONS:
         raise ValueError(f"the geometry {kind!r} is not known, only XY and XYZ")
-    values = _numbers(only_child(geometry, "DataItem")).astype(np.float64)
+    values = items.numbers(only_child(geometry, "DataItem")).astype(np.float64)
     if values.ndim != 2 or values.shape[1] != _DIMENSIONS[kind]:
         raise ValueError(f"its points have the shape {values.shape}, which is not {kind}")
     return values
 
 
-def _cells(topology: Element) -> tuple[list[str], list[AnyArray]]:
+def _cells(topology: Element, items: Items) -> tuple[list[str], list[AnyArray]]:
     """Return runs of cells of one kind, and their points."""
     _check_topology(topology)
     kind = topology.get("TopologyType", topology.get("Type", "")).lower()
-    values = _numbers(only_child(topology, "DataItem"))
+    values = items.numbers(only_child(topology, "DataItem"))
     if values.dtype.kind not in "iu":
         raise ValueError("its topology is not of integers")
     if kind == "mixed":
@@ -162,7 +135,7 @@ def _mixed(values: AnyArray) -> tuple[list[str], list[AnyArray]]:
     return kinds, rows
 
 
-def _data(grid: Element, center: str, length: int) -> dict[str, AnyArray]:
+def _data(grid: Element, center: str, length: int, items: Items) -> dict[str, AnyArray]:
     arrays: dict[str, AnyArray] = {}
     for element in grid.iterfind("Attribute"):
         if element.get("Center", "Node") not in ("Node", "Cell"):
@@ -170,36 +143,10 @@ def _data(grid: Element, center: str, length: int) -> dict[str, AnyArray]:
         if element.get("Center", "Node") != center:
             continue
         name = attribute(element, "Name")
-        values = _numbers(only_child(element, "DataItem"))
+        values = items.numbers(only_child(element, "DataItem"))
         if name in arrays or values.ndim == 0 or len(values) != length:
             raise ValueError(
                 f"the attribute {name!r} comes twice, or has {values.shape} values for {length}"
             )
         arrays[name] = values
     return arrays
-
-
-def _numbers(item: Element) -> AnyArray:
-    form = item.get("Format", "XML")
-    if form != "XML" or item.get("Reference") is not None or len(item):
-        raise ValueError(
-            f"its numbers are elsewhere ({form}): write them into the XDMF file, or write VTU"
-        )
-    shape = _shape(attribute(item, "Dimensions"))
-    kind = item.get("NumberType", item.get("DataType", "Float"))
-    if kind not in ("Float", "Int", "UInt", "Char", "UChar"):
-        raise ValueError(f"numbers of type {kind!r} are not known")
-    # all digits count: without a precision, which means four bytes, programs write them too
-    values = parsed(item.text or "", np.float64 if kind == "Float" else np.int64)
-    if math.prod(shape) != len(values):
-        raise ValueError(f"an item announces {shape} numbers, {len(values)} follow")
-    return values.reshape(shape)
-
-
-def _shape(text: str) -> list[int]:
-    words, longest = text.split(), len(str(2**63))
-    if not 0 < len(words) <= _MOST_DIMENSIONS or not all(
-        word.isdecimal() and len(word) < longest for word in words
-    ):
-        raise ValueError(f"the dimensions {text[:40]!r} of an item are no counts")
-    return [int(word) for word in words]

@@ -1,0 +1,138 @@
+"""Series in time: one instant is read, the last one by default, and all are converted."""
+
+import meshio
+import numpy as np
+import pytest
+from meshes import square, two_region_cube, two_regions
+
+import anistar
+from anistar import formats
+from anistar.base.errors import FormatError
+from anistar.cli import main
+from anistar.meshes.validation import validate
+from anistar.runs.series import SeriesWriter
+
+TIMES = (0.0, 0.5, 2.0)
+
+
+def write_pvd(path):
+    writer = SeriesWriter(path)
+    for k, time in enumerate(TIMES):
+        mesh = square(k + 1)
+        writer.add(time, mesh, {"u": mesh.points[:, 0] + k})
+
+
+def write_xdmf(path, data_format):
+    mesh = two_regions(2)
+    points = np.pad(mesh.points, ((0, 0), (0, 1)))
+    with meshio.xdmf.TimeSeriesWriter(path, data_format=data_format) as writer:
+        writer.write_points_cells(points, [("triangle", mesh.cells)])
+        for k, time in enumerate(TIMES):
+            writer.write_data(time, point_data={"u": mesh.points[:, 0] + k})
+
+
+@pytest.fixture(params=["pvd", "XML", "HDF"])
+def series(request, tmp_path, monkeypatch):
+    """The path of a series of three instants, whose field is larger by one at each."""
+    monkeypatch.chdir(tmp_path)
+    if request.param == "pvd":
+        write_pvd("run.pvd")
+        return "run.pvd"
+    if request.param == "HDF":
+        pytest.importorskip("h5py")
+    write_xdmf("run.xdmf", request.param)
+    return "run.xdmf"
+
+
+def lowest(content):
+    mesh, fields = content[:2]
+    assert validate(mesh) == []
+    return fields["u"].values.min()
+
+
+def test_the_last_instant_is_read_and_told(series):
+    *content, report = formats.read_with_report(series)
+    assert lowest(content) == 2
+    assert report.warnings[0].startswith("of its 3 instants the last one is read, at time 2; ")
+
+
+def test_any_instant_can_be_chosen_by_number(series):
+    assert formats.instants(series) == TIMES
+    for number in (0, 1, 2, -1, -3):
+        assert lowest(anistar.read(series, instant=number)) == number % 3
+        *content, report = formats.read_with_report(f"{series}:{number}")
+        assert lowest(content) == number % 3
+        assert not any("instant" in text for text in report.warnings)
+    with pytest.raises(FormatError, match=rf"{series}: there is no instant 3: it has 3"):
+        anistar.read(series, instant=3)
+
+
+def test_a_whole_series_is_converted_with_its_times(series):
+    assert main(["convert", series, "all.pvd"]) == 0
+    assert formats.instants("all.pvd") == TIMES
+    assert [lowest(anistar.read("all.pvd", instant=k)) for k in range(3)] == [0, 1, 2]
+    assert main(["convert", f"{series}:1", "one.pvd"]) == 0
+    assert formats.instants("one.pvd") == (0.0,)
+    assert lowest(anistar.read("one.pvd")) == 1
+
+
+def test_files_without_instants_have_none_to_choose(tmp_path):
+    formats.write(tmp_path / "m.vtu", square(1))
+    assert formats.instants(tmp_path / "m.vtu") == (0.0,)
+    with pytest.raises(FormatError, match="have no instants to choose"):
+        formats.read(tmp_path / "m.vtu", instant=0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("run_001.vtu", "../run_001.vtu", "which is not in its folder"),
+        ("run_001.vtu", "/run_001.vtu", "which is not in its folder"),
+        ("run_001.vtu", "run_001.pvtu", "only VTU is read"),
+        ('timestep="0.5"', 'timestep="0.0"', "several files at one time"),
+        ('"Collection"', '"ImageData"', "it is no collection"),
+    ],
+)
+def test_a_list_that_leads_elsewhere_is_refused(tmp_path, old, new, message):
+    path = tmp_path / "run.pvd"
+    write_pvd(path)
+    path.write_text(path.read_text().replace(old, new))
+    with pytest.raises(FormatError, match=message):
+        formats.read(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('CollectionType="Temporal"', 'CollectionType="Spatial"', "it has a spatial collection"),
+        ('Name="mesh"', 'Name="other"', "which there are 0"),
+        ('xpointer="', 'href="other.xdmf" xpointer="', "includes another file"),
+    ],
+)
+def test_a_series_in_xdmf_that_is_damaged_is_refused(tmp_path, old, new, message):
+    path = tmp_path / "run.xdmf"
+    write_xdmf(path, "XML")
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    with pytest.raises(FormatError, match=message):
+        formats.read(path)
+
+
+def test_numbers_in_hdf5_are_read_beside_the_document_only(tmp_path):
+    pytest.importorskip("h5py")
+    mesh = two_region_cube()
+    content = meshio.Mesh(mesh.points, [("tetra", mesh.cells)], point_data={"u": mesh.points[:, 1]})
+    (tmp_path / "in").mkdir()
+    content.write(tmp_path / "in" / "m.xdmf")
+    got, fields = formats.read(tmp_path / "in" / "m.xdmf")
+    assert np.array_equal(got.points, mesh.points)
+    assert np.array_equal(fields["u"].values, mesh.points[:, 1])
+    assert validate(got) == []
+    text = (tmp_path / "in" / "m.xdmf").read_text()
+    (tmp_path / "m.xdmf").write_text(text.replace("m.h5", "in/m.h5"))
+    with pytest.raises(FormatError, match="no HDF5 file beside it"):
+        formats.read(tmp_path / "m.xdmf")
+    (tmp_path / "in" / "m.h5").write_bytes((tmp_path / "in" / "m.h5").read_bytes()[:300])
+    with pytest.raises(FormatError, match=r"m\.h5 is truncated or no HDF5"):
+        formats.read(tmp_path / "in" / "m.xdmf")
