@@ -23,6 +23,7 @@ from .content.assembly import ReadReport, assembled
 from .content.export import exported
 from .content.raw import RawMesh
 from .content.series import Series, numbered
+from .gmsh import converter
 from .gmsh import reader as gmsh_reader
 from .gmsh import writer as gmsh_writer
 from .medit import files as medit_files
@@ -59,6 +60,7 @@ _READERS: dict[str, Callable[[Path], RawMesh]] = {
     ".su2": su2_reader.read,
     ".vtk": legacy_reader.read,
     ".vtu": vtu_reader.read,
+    **dict.fromkeys(converter.SUFFIXES, converter.read),
 }
 _SERIES: dict[str, Callable[[Path], Series]] = {
     ".pvd": pvd.series,
