@@ -65,6 +65,8 @@ def _picture_of(name: str) -> Path:
 
 def small_arguments(gallery_conf, script_vars):
     """Return the words after the program's name in the command line of an example."""
+    # The gallery leaves out the name that scripts find the files beside them by.
+    script_vars.get("example_globals", {})["__file__"] = script_vars["src_file"]
     name = Path(script_vars["src_file"]).stem
     given = ARGUMENTS[name].format(folder=_FOLDER.name).split()
     return [*given, "--picture", str(_picture_of(name))]

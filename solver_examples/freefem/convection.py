@@ -1,6 +1,6 @@
 r"""
-FreeFEM: layers at an outflow
-=============================
+Layers where a flow leaves a square
+===================================
 
 A FreeFEM script that knows nothing of anistar is called by ``anistar loop``: convection and
 diffusion with layers at the two sides through which the flow leaves a square. The labels of the
