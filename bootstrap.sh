@@ -7,7 +7,7 @@
 #   ./bootstrap.sh docs       also what `make docs` needs
 #   ./bootstrap.sh bench      also what `make bench` needs
 #   ./bootstrap.sh wheel      also what `make wheel` needs
-#   ./bootstrap.sh programs   also the browser and the solver that tests run if they are there
+#   ./bootstrap.sh programs   only the browser and the solver that tests run if they are there
 #   ./bootstrap.sh paraview   also what `make paraview-test` needs
 #   ./bootstrap.sh environment  all but anistar itself, of which another build goes elsewhere
 set -euo pipefail
@@ -142,6 +142,15 @@ show_steps() {
   [ ! -t 2 ] || printf '\n' >&2
 }
 
+# As many compilers as there are cores, but no more than memory holds: the largest source takes 1 GB.
+compilers() {
+  local cores gigabytes
+  cores=$(nproc 2>/dev/null || echo 2)
+  gigabytes=$(awk '/^MemAvailable/ { print int($2 / 1e6) }' /proc/meminfo 2>/dev/null || echo 2)
+  [ "$gigabytes" -ge 1 ] || gigabytes=1
+  echo $((cores < gigabytes ? cores : gigabytes))
+}
+
 # A plain install, not an editable one: type checkers and documentation builds cannot follow the
 # import hook of an editable one, and the tests should see what a user gets. The build folder
 # is kept, so that only the C++ files that changed are compiled again.
@@ -152,6 +161,7 @@ install_anistar() { # install_anistar ON|OFF: with or without the module that on
   is_done anistar "$wanted $1" && return
   say "building and installing anistar; the compiler's words go to $log"
   mkdir -p build
+  export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(compilers)}
   "$VENV/bin/python" -m pip install --verbose --disable-pip-version-check \
     --no-build-isolation --no-deps --force-reinstall \
     --config-settings cmake.define.ANISTAR_FOR_TESTS="$1" . 2>&1 | tee "$log" | show_steps || {
@@ -174,6 +184,10 @@ install_python_for_old_wheel() {
 
 main() {
   local extra
+  if [ "$*" = programs ]; then
+    install_debian_packages "${PROGRAMS[@]}"
+    return
+  fi
   install_debian_packages "${BUILD_PACKAGES[@]}"
   make_environment
   if [ "$*" = demo ]; then
@@ -188,7 +202,6 @@ main() {
   fi
   for extra in "$@"; do
     case $extra in
-      programs) install_debian_packages "${PROGRAMS[@]}" ;;
       paraview) install_debian_packages "${PARAVIEW_PACKAGES[@]}" ;;
       wheel)
         install_python_for_old_wheel

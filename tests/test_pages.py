@@ -113,7 +113,7 @@ def test_the_pipeline_of_the_page_on_vtk_adapts_a_file(tmp_path):
 
 def test_the_code_of_the_page_on_petsc_carries_labels_fields_and_metrics():
     petsc = pytest.importorskip("anistar.adapters.petsc", reason="no petsc4py for Python 3.11")
-    _, code = code_blocks("docs/how-to/petsc.md", "python")
+    _, code, _ = code_blocks("docs/how-to/petsc.md", "python")
     mesh = square(8)
     dm = petsc.to_dmplex(mesh)
     vec = petsc.to_vec(dm, np.tanh(9 * mesh.points[:, 0] - 4))
