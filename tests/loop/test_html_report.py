@@ -124,7 +124,7 @@ def test_a_folder_without_a_loop_is_refused(tmp_path, content, message):
         write_html_report(tmp_path, tmp_path / "page.html")
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="no chromium on PATH: apt-get install chromium")
+@pytest.mark.skipif(CHROMIUM is None, reason="no chromium on PATH: ./bootstrap.sh programs")
 def test_a_browser_shows_the_page(run, tmp_path):
     """Without a server; pictures that did not decode would have no size."""
     path = tmp_path / "page.html"
@@ -136,6 +136,7 @@ def test_a_browser_shows_the_page(run, tmp_path):
     )
     path.write_text(path.read_text().replace("</body>", probe))
     words = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"]
+    words += ["--no-first-run", "--disable-background-networking"]
     done = subprocess.run(
         [*words, f"--user-data-dir={tmp_path}/profile", path.as_uri()],
         capture_output=True, text=True, timeout=120,

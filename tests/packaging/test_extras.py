@@ -38,6 +38,12 @@ def test_the_requirements_of_an_extra_are_those_of_the_project(extra):
     assert sorted(map(name_of, requirements(extra))) == sorted(map(name_of, declared))
 
 
+def test_the_page_on_installing_lists_every_extra_that_users_have():
+    page = (ROOT / "docs" / "install.md").read_text()
+    listed = re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)
+    assert set(listed) == PROJECT["optional-dependencies"].keys() - {"bench", "dev", "docs"}
+
+
 def test_the_doctor_knows_extras_that_exist():
     assert set(OPTIONAL.values()) <= set(PROJECT["optional-dependencies"])
 
