@@ -108,7 +108,6 @@ def test_everything_else_works_without_any_optional_package(tmp_path):
         assert "".join(install_command(extra).split()) in said
 
 
-
 @pytest.mark.parametrize(
     "words", [["convert", "in.vtu", "out.med"], ["convert", "in.med", "a.vtu"]]
 )

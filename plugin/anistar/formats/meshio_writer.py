@@ -64,6 +64,8 @@ def write(temporary: Path, content: RawMesh, path: Path) -> None:
 
 def _write_med(temporary: Path, mesh: Any, content: RawMesh) -> None:
     """Write the tags of a mesh as groups of MED, and all values as reals."""
+    import meshio
+
     h5py = library()
     mesh.cell_tags, families = _families(content)
     del mesh.cell_data[TAGS]
