@@ -248,7 +248,9 @@ def test_convert_changes_the_format_and_keeps_the_fields(folder):
 
 def test_doctor_finds_this_installation_sound(capsys):
     assert main(["doctor", "--json"]) == 0
-    findings = {item["name"]: item for item in report_of(capsys)["findings"]}
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    findings = {item["name"]: item for item in json.loads(printed.out)["findings"]}
     assert findings["adaptation in 2D"]["state"] == findings["adaptation in 3D"]["state"] == "ok"
     for package in ADAPTERS:
         assert findings[package]["state"] in ("ok", "absent")
