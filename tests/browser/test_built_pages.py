@@ -38,6 +38,14 @@ def test_no_page_overflows_or_has_raw_formulas_broken_pictures_or_code_cut_off(a
     assert "\n".join(wrong) == ""
 
 
+@pytest.mark.parametrize("width", [400, 800, 1024, 1330])
+def test_pages_fit_in_other_windows_too(width, tmp_path):
+    pages = ["/index.html", "/cad.html", "/certificate.html", "/coming-from.html"]
+    seen = visit(BUILT, pages, tmp_path, width=width, columns=0)
+    wrong = [f"{name}: {what}" for name, answer in seen.items() for what in answer.complaints]
+    assert "\n".join(wrong) == ""
+
+
 def test_every_link_within_the_pages_leads_somewhere():
     assert "\n".join(missing_links(BUILT)) == ""
 

@@ -85,7 +85,7 @@ def by_mmgpy(mesh: anistar.Mesh, M: Floats, geometry: anistar.Mesh) -> anistar.M
     )
 
 
-TOOLS = {"anistar": by_anistar} | ({"mmgpy (Mmg)": by_mmgpy} if mmgpy else {})
+TOOLS = {"anistar": by_anistar} | ({"Mmg": by_mmgpy} if mmgpy else {})
 
 
 def run(case: Case, tool: str, passes: int) -> Result:

@@ -20,6 +20,8 @@ from anistar.adapters.skfem import from_skfem, to_skfem
 
 Floats = NDArray[np.float64]
 Function = Callable[[Floats, Floats], Floats]
+Row = tuple[int, float, float]
+"""Vertices, and the error in L2 and in the energy norm."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,13 +185,13 @@ def errors(problem: Problem, basis: skfem.Basis, u: Floats) -> tuple[float, floa
     return float(l2), float(energy)
 
 
-def adapted(problem: Problem, complexities: tuple[float, ...]) -> list[tuple[int, float, float]]:
+def adapted(problem: Problem, complexities: tuple[float, ...]) -> list[Row]:
     """Return vertices and errors of the meshes of a loop with the default options."""
     mesh = problem.first()
     p = problem.diffusion(*mesh.p[:, mesh.t].mean(axis=1))
     if len(np.unique(p)) > 1:
         mesh = mesh.with_subdomains({"high": np.flatnonzero(p > p.min())})
-    rows: list[tuple[int, float, float]] = []
+    rows: list[Row] = []
 
     def solve(mesh: anistar.Mesh, fields: dict[str, Floats]) -> dict[str, Floats]:
         basis, u = solved(problem, to_skfem(mesh))
@@ -201,23 +203,14 @@ def adapted(problem: Problem, complexities: tuple[float, ...]) -> list[tuple[int
     return rows
 
 
-def refined(problem: Problem, most: int) -> list[tuple[int, float, float]]:
-    """Return those of scikit-fem's refinement of the triangles with the largest residuals."""
+def refined(problem: Problem, most: int, *, uniformly: bool = False) -> list[Row]:
+    """Return those of refining the triangles with the largest residuals, or all, by scikit-fem."""
     mesh, rows = problem.first(), []
     while not rows or rows[-1][0] < most:
         basis, u = solved(problem, mesh)
         rows.append((mesh.p.shape[1], *errors(problem, basis, u)))
-        mesh = mesh.refined(worst(residuals(problem, basis, u)))
-    return rows
-
-
-def uniform(problem: Problem, most: int) -> list[tuple[int, float, float]]:
-    """Return those of uniform meshes."""
-    mesh, rows = problem.first(), []
-    while not rows or rows[-1][0] < most:
-        basis, u = solved(problem, mesh)
-        rows.append((mesh.p.shape[1], *errors(problem, basis, u)))
-        mesh = mesh.refined()
+        split = () if uniformly else (worst(residuals(problem, basis, u)),)
+        mesh = mesh.refined(*split)
     return rows
 
 

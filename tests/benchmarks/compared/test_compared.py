@@ -24,7 +24,7 @@ TABLES = ROOT / "docs" / "tables"
 @pytest.mark.parametrize("make", mitchell_problems.PROBLEMS)
 def test_a_problem_of_the_collection_has_the_solution_that_it_is_compared_with(make):
     problem = make()
-    (n, coarse, _), *_, (m, fine, _) = mitchell_problems.uniform(problem, 1000)
+    (n, coarse, _), *_, (m, fine, _) = mitchell_problems.refined(problem, 1000, uniformly=True)
     order = 2 * np.log(coarse / fine) / np.log(m / n)
     assert order > 0.15  # the roughest is in H^1.1
 
@@ -42,6 +42,15 @@ def test_refinement_by_residuals_marks_the_corner():
     worst = mitchell_problems.worst(mitchell_problems.residuals(problem, basis, u), 0.2)
     middles = basis.mesh.p[:, basis.mesh.t[:, worst]].mean(axis=1)
     assert np.hypot(*middles).max() < 0.3
+
+
+def test_the_table_of_the_square_has_a_row_for_each_tool(monkeypatch):
+    cases, tools = write_tables.run_cases.CASES, write_tables.run_cases.TOOLS
+    monkeypatch.setattr(write_tables.run_cases, "CASES", cases[-1:])
+    monkeypatch.setattr(write_tables.run_cases, "TOOLS", {"anistar": tools["anistar"]})
+    head, _, row = write_tables.plane_table(200.0, 1).splitlines()
+    assert row.startswith("| smooth | **anistar** | ")
+    assert row.count("|") == head.count("|")
 
 
 def test_an_error_between_two_meshes_follows_a_power_law():
@@ -62,7 +71,7 @@ def test_a_case_of_the_working_group_has_a_start_mesh_and_published_figures(case
     assert len(published.UGAWG[case.name]) == 5
 
 
-@pytest.mark.parametrize("name", ["metrics", "problems", "bubble"])
+@pytest.mark.parametrize("name", ["plane", "metrics", "problems", "bubble"])
 def test_the_page_shows_the_table(name):
     assert f"{{include}} tables/compared-{name}.txt" in (ROOT / "docs/comparisons.md").read_text()
     assert "| **anistar" in (TABLES / f"compared-{name}.txt").read_text() or name == "problems"

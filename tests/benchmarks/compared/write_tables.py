@@ -19,11 +19,14 @@ import given_metrics
 import mitchell_problems
 import numpy as np
 import published
-from mitchell_problems import Problem
+import run_cases
+from mitchell_problems import Problem, Row
 
 COMPLEXITIES = (250, 500, 500, 1000, 1000, 2000, 2000, 2000)
 MOST = 5000  # vertices that the competitors of the loop are refined to
-PASSES = {"anistar": 8, "mmgpy (Mmg)": 4}
+PASSES = {"anistar": 8, "Mmg": 4}
+TITLES = {"anistar": "anistar", "mmgpy": "Mmg"}
+IN_THE_PLANE = 4000.0  # complexity
 Rows = Iterable[Sequence[str]]
 
 
@@ -38,25 +41,39 @@ def metrics_table(passes: dict[str, int]) -> str:
     head = ("case", "tool", "vertices", "unit edges, %", "longest edge", "worst quality", "CPU, s")
     rows = []
     for case in given_metrics.CASES:
-        for tool in given_metrics.TOOLS:
-            done = given_metrics.run(case, tool, passes[tool])
-            rows.append(
-                [
-                    case.name, f"**{tool}**", str(done.points), f"{done.unit_edges:.1f}",
-                    f"{done.longest_edge:.2f}", f"{done.worst_quality:.3f}", f"{done.seconds:.1f}",
-                ]
-            )  # fmt: skip
-        rows += [
-            [
-                case.name, row.tool, str(row.points), f"{row.unit_edges:.1f}",
-                f"{row.longest_edge:.2f}", f"{row.worst_quality:.3f}", "",
-            ]
-            for row in published.UGAWG[case.name]
-        ]  # fmt: skip
+        ours = [given_metrics.run(case, tool, passes[tool]) for tool in given_metrics.TOOLS]
+        made = [[f"**{done.tool}**", *mesh_cells(done), f"{done.seconds:.1f}"] for done in ours]
+        made += [[row.tool, *mesh_cells(row), ""] for row in published.UGAWG[case.name]]
+        names = [case.name] + [""] * (len(made) - 1)
+        rows += [[name, *cells] for name, cells in zip(names, made, strict=True)]
     return table(head, rows)
 
 
-def at(points: float, rows: list[tuple[int, float, float]], column: int) -> float:
+def mesh_cells(mesh: given_metrics.Result | published.MeshFigures) -> list[str]:
+    """Return what the table says of a mesh."""
+    return [
+        str(mesh.points),
+        f"{mesh.unit_edges:.1f}",
+        f"{mesh.longest_edge:.2f}",
+        f"{mesh.worst_quality:.2g}",
+    ]
+
+
+def plane_table(complexity: float, passes: int) -> str:
+    """Return the table of meshes of a square, each the best one for a function in L2."""
+    head = ("case", "tool", "vertices", "unit edges, %", "longest edge", "worst quality")
+    rows = []
+    for case in run_cases.CASES:
+        for tool in run_cases.TOOLS:
+            name, _, *figures, error, _, seconds, _, _ = run_cases.run(
+                case, tool, complexity, passes
+            )
+            shown = name if tool == "anistar" else ""
+            rows.append([shown, f"**{TITLES[tool]}**", *figures, error, seconds])
+    return table((*head, "complexity x L2 error", "CPU, s"), rows)
+
+
+def at(points: float, rows: list[Row], column: int) -> float:
     """Return an error at a number of vertices, by a power law between two meshes."""
     known = np.log([[row[0], row[column]] for row in rows])
     return float(np.exp(np.interp(np.log(points), known[:, 0], known[:, 1])))
@@ -69,16 +86,16 @@ def problem_rows(
     ours = mitchell_problems.adapted(problem, complexities)[-2:]
     others = [
         mitchell_problems.refined(problem, most),
-        mitchell_problems.uniform(problem, most),
+        mitchell_problems.refined(problem, most, uniformly=True),
     ]
     points = math.sqrt(ours[0][0] * ours[1][0])
     for column, norm in ((1, "L2"), (2, "energy")):
         error = math.sqrt(ours[0][column] * ours[1][column])
         refined, uniform = (at(points, rows, column) for rows in others)
-        yield [
-            problem.name, norm, f"{points:.0f}", f"{error:.1e}", f"{refined:.1e}", f"{uniform:.1e}",
-            f"{refined / error:.2f}", f"{uniform / error:.1f}",
-        ]  # fmt: skip
+        errors = [f"{value:.1e}" for value in (error, refined, uniform)]
+        gains = [f"{refined / error:.2f}", f"{uniform / error:.1f}"]
+        name = problem.name if norm == "L2" else ""
+        yield [name, norm, f"{points:.0f}", *errors, *gains]
 
 
 def problems_table(complexities: tuple[float, ...], most: int) -> str:
@@ -108,6 +125,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args().folder
     logging.disable()  # a start mesh cannot resolve these layers, as every first pass would say
+    (folder / "compared-plane.txt").write_text(plane_table(IN_THE_PLANE, 4))
     (folder / "compared-metrics.txt").write_text(metrics_table(PASSES))
     (folder / "compared-problems.txt").write_text(problems_table(COMPLEXITIES, MOST))
     (folder / "compared-bubble.txt").write_text(bubble_table((5, 15)))
