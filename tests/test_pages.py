@@ -93,6 +93,23 @@ def test_the_code_of_the_page_on_seeing_prints_a_line_and_leaves_pictures(
     assert min(sizes.values()) > 10_000
 
 
+def test_the_code_of_the_first_page_adapts_a_file_and_loops(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mesh = square(8)
+
+    def solve(mesh, fields):
+        return {"u": np.tanh(20 * (mesh.points.sum(axis=1) - 1))}
+
+    anistar.write("in.vtu", mesh, solve(mesh, {}))
+    code = "\n".join(code_blocks("docs/index.md", "python"))
+    names = {"solve": solve}
+    exec(code.replace("10_000", "300").replace("(1000, 2000, 4000)", "(100, 200)"), names)
+    adapted, fields = anistar.read("out.vtu")
+    assert anistar.validate(adapted, mesh) == []
+    assert set(fields) == {"u"}
+    assert anistar.validate(names["loop"].steps[-1].mesh, mesh) == []
+
+
 def test_the_pipeline_of_the_page_on_vtk_adapts_a_file(tmp_path):
     pytest.importorskip("vtkmodules")
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
