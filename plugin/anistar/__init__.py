@@ -9,7 +9,8 @@ from .base.progress import progress
 from .formats import read, write
 from .judging.certificate import Certificate, certify
 from .judging.explanation import FacetOfStar, SimplexOfStar, explain_star, explain_surface_star
-from .loops.adapt import Adapted, AdaptOptions, adapt
+from .loops.adapt import Adapted, adapt
+from .loops.adapt_options import AdaptOptions
 from .loops.keeping import KeepOptions, needs_adaptation
 from .loops.loop import Loop, LoopError, Step, adapt_loop
 from .loops.loop_options import LoopOptions

@@ -9,7 +9,8 @@ from meshes import annulus, cube, slit, square, two_regions
 
 from anistar.base.errors import MeshingError
 from anistar.judging.interpolation_error import l2_error
-from anistar.loops.adapt import AdaptOptions, adapt
+from anistar.loops.adapt import adapt
+from anistar.loops.adapt_options import AdaptOptions
 from anistar.meshes.fields import Field
 from anistar.meshes.validation import validate
 from anistar.metric import MetricOptions, estimate, from_fields

@@ -21,7 +21,8 @@ from rich.table import Table
 from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import KDTree
 
-from anistar.loops.adapt import AdaptOptions, adapt
+from anistar.loops.adapt import adapt
+from anistar.loops.adapt_options import AdaptOptions
 from anistar.meshes.fields import Field
 from anistar.meshes.mesh import Mesh
 from anistar.meshes.validation import validate

@@ -6,7 +6,7 @@ from meshes import annulus, cube, square
 
 from anistar.base.errors import MeshingError
 from anistar.judging.interpolation_error import interpolation_error
-from anistar.loops.adapt import AdaptOptions
+from anistar.loops.adapt_options import AdaptOptions
 from anistar.loops.keeping import KeepOptions, needs_adaptation
 from anistar.loops.loop import LoopError, adapt_loop
 from anistar.loops.loop_options import LoopOptions

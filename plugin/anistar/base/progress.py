@@ -89,9 +89,10 @@ class Task:
     steps: int = 0
     began: float = field(default_factory=time.perf_counter)
 
-    def enter(self, phase: str, fraction: float | None = None) -> None:
-        """Tell the phase, and how far it is."""
+    def enter(self, phase: str, fraction: float | None = None, note: str | None = None) -> None:
+        """Tell the phase, how far it is, and what else is worth knowing; None: as before."""
         self.phase, self.fraction = phase, fraction
+        self.note = self.note if note is None else note
 
     def advance(self, note: str = "") -> None:
         """Tell that one more step is done."""
@@ -107,9 +108,7 @@ class Task:
             return None
 
         def told(phase: str, fraction: float, n_vertices: int) -> None:
-            self.enter(phase, fraction)
-            if n_vertices:
-                self.note = f"{n_vertices:,} points"
+            self.enter(phase, fraction, f"{n_vertices:,} points" if n_vertices else None)
             if given is not None:
                 given(phase, fraction)
 

@@ -17,7 +17,8 @@ import numpy as np
 from ..adapters import dolfinx_wheel
 from ..base.extras import install_command
 from ..base.report import attributes
-from ..loops.adapt import AdaptOptions, adapt
+from ..loops.adapt import adapt
+from ..loops.adapt_options import AdaptOptions
 from ..meshes.mesh import Mesh
 from ..meshes.validation import validate
 from ..metric import MetricOptions

@@ -13,7 +13,8 @@ from .. import pictures
 from ..base.arrays import Floats
 from ..base.report import write_json
 from ..judging.interpolation_error import l2_norm
-from ..loops.adapt import AdaptOptions, adapt
+from ..loops.adapt import adapt
+from ..loops.adapt_options import AdaptOptions
 from ..loops.loop import Loop, Step, adapt_loop
 from ..loops.loop_options import LoopOptions
 from ..meshes.mesh import Mesh

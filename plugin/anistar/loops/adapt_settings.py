@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any, TypeVar
 
 from ..base.option_names import canonical
-from .adapt import AdaptOptions
+from .adapt_options import AdaptOptions
 
 Options = TypeVar("Options")
 

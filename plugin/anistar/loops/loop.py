@@ -23,7 +23,10 @@ from ..metric.base.told import Told
 from ..objects import AnyMesh, as_mesh, made, opened, values_of
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
-from .adapt import AdaptOptions, AdaptReport, Wanted, adapt_to, metric_field_names, metric_for
+from .adapt import adapt_to, metric_field_names, metric_for
+from .adapt_options import AdaptOptions
+from .adapt_report import AdaptReport
+from .element_counts import Wanted
 from .keeping import needs_adaptation
 from .loop_options import GROWTH, LoopOptions
 

@@ -11,7 +11,7 @@ from typing import Any
 from ..base.arguments import require
 from ..meshes.mesh import Mesh
 from ..metric.base.by_name import by_name, require_numbers
-from .adapt import AdaptOptions
+from .adapt_options import AdaptOptions
 from .adapt_settings import with_adapt_settings
 from .keeping import KeepOptions
 from .settling import Settled, check_max_coarsening

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..metric.base.by_name import by_name
-from .adapt import AdaptOptions
+from .adapt_options import AdaptOptions
 
 
 @by_name

@@ -21,7 +21,7 @@ from ..metric.base.told import Told
 from ..metric.kernels.elementary import log, power
 from ..objects import AnyMesh, as_mesh, opened
 from ..remeshing.remesh import remesh
-from .adapt import AdaptOptions
+from .adapt_options import AdaptOptions
 from .loop import Solve, Step, adapt_loop, solving_on
 from .loop_options import LoopOptions
 from .settling import Settled

@@ -29,7 +29,8 @@ from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
 from ..remeshing.remesh import remesh
 from ..transfer import TransferOptions, transfer
-from .adapt import AdaptOptions, metric_field_names
+from .adapt import metric_field_names
+from .adapt_options import AdaptOptions
 from .adapt_settings import with_adapt_settings
 from .keeping import KeepOptions, needs_adaptation
 from .settling import check_max_coarsening

@@ -8,7 +8,8 @@ from typing import Any
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
-from ...loops.adapt import AdaptOptions, adapt
+from ...loops.adapt import adapt
+from ...loops.adapt_options import AdaptOptions
 from ...meshes.fields import Field
 from ...meshes.mesh import Mesh
 from ...metric import from_fields

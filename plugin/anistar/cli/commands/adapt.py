@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 
 from ...formats import write, write_metric
-from ...loops.adapt import Adapted, Wanted, adapt_to
+from ...loops.adapt import Adapted, adapt_to
+from ...loops.element_counts import Wanted
 from ...loops.forecast import Forecast
 from .. import console
 from ..before_after import MeshBefore, errors_of, show_before_and_after
