@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.extras import install_command
 from ..pictures.plane import save
 from ..pictures.volume import paint
 from .palette import INK, LINE, colours_of_categories, colours_of_numbers
@@ -18,7 +19,7 @@ try:
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 except ImportError as error:
-    error.add_note("this plot needs matplotlib: pip install 'anistar[plot]'")
+    error.add_note(f"plots need matplotlib: {install_command('plot')}")
     raise
 
 #: Direction from a 3D mesh to the eye.

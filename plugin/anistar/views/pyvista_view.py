@@ -12,6 +12,7 @@ import numpy as np
 
 from ..base.arrays import AnyArray, Ints
 from ..base.atomic import replaced
+from ..base.extras import install_command
 from .palette import INK, LINE, colours_of_categories, colours_of_numbers
 from .scene import Scene
 
@@ -19,7 +20,7 @@ try:
     import pyvista
     from vtkmodules.vtkCommonCore import vtkLogger
 except ImportError as error:
-    error.add_note("this plot needs pyvista: pip install 'anistar[plot]'")
+    error.add_note(f"plots by PyVista need it: {install_command('pyvista')}")
     raise
 
 #: Direction from a 3D mesh to the eye.
