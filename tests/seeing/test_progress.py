@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -205,6 +206,32 @@ def test_a_log_gets_a_line_for_a_new_phase_at_most_once_a_second():
         "anistar: 0:01 of about 1:05 remesh size 9 points",
         "anistar: 0:02 of about 1:05 remesh report 9 points",
     ]
+
+
+def test_a_notebook_shows_bars_below_the_cell_and_takes_them_away(monkeypatch):
+    pages = []
+
+    class Shown:
+        def update(self, page):
+            pages.append(page)
+
+    def show(page, display_id):
+        pages.append(page)
+        return Shown()
+
+    shell = type("ZMQInteractiveShell", (), {})()
+    display_module = SimpleNamespace(HTML=lambda text: text, display=show)
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    monkeypatch.setitem(sys.modules, "IPython.display", display_module)
+    screen = screen_for(None, is_wanted=False)
+    with screen:
+        for fraction in (0.25, 0.5):
+            screen.draw([Row("re<mesh", "size", fraction, "", "9 points", 2.0, None)])
+    first, second, last = pages
+    assert '<progress value="0.250">' in first
+    assert "re&lt;mesh" in first
+    assert '<progress value="0.500">' in second
+    assert last == ""
 
 
 def test_times_are_told_as_a_clock_does():
