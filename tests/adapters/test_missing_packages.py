@@ -97,7 +97,7 @@ def test_a_petsc_program_is_told_in_one_line_too():
 
 def test_everything_else_works_without_any_optional_package(tmp_path):
     anistar.write(tmp_path / "in.vtu", square(4))
-    hidden = f"{DOLFINX},skfem,matplotlib,pyvista,vtk,vtkmodules,ngsolve,netgen,mfem,mmgpy"
+    hidden = f"{DOLFINX},skfem,matplotlib,pyvista,vtk,vtkmodules,ngsolve,netgen,mfem,h5py,mmgpy"
     words = ["study", "in.vtu", "--exact", "x*y", "--complexities", "20,40"]
     done = without(hidden, CALL, *words, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
@@ -117,4 +117,4 @@ def test_files_in_hdf5_say_what_reads_them(tmp_path, words):
     done = without("h5py", CALL, *words, cwd=tmp_path)
     assert done.returncode == 2
     (line,) = done.stderr.splitlines()
-    assert f"h5py is missing: {sys.executable} -m pip install h5py" in line
+    assert f"for which h5py is missing: {install_command('hdf5')}" in line

@@ -7,15 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from formats.test_element_kinds import of_second_order
 from meshes import cube, slit, square, two_region_cube, two_regions
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersTensor import vtkTensorPrincipalInvariants
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 import anistar
 from anistar.adapters import vtk
+from anistar.adapters.vtk.grids import from_vtk_with_report
 
 PLUGIN = Path(vtk.__file__).with_name("paraview_plugin.py")
 
@@ -310,3 +312,35 @@ def test_glyphs_are_the_unit_balls_of_the_metric(make):
     assert glyphs.GetNumberOfCells() % len(chosen) == 0
     with pytest.raises(ValueError, match="scale must be positive, got 0"):
         vtk.metric_glyphs(mesh, metric, scale=0)
+
+
+def test_a_grid_at_some_height_of_quadrilaterals_is_split_and_stays_there():
+    mesh = square(3)
+    high = anistar.Mesh(**(mesh.arrays() | {"z": 1.5}))
+    grid = vtk.to_vtk(high, {"v": mesh.points})
+    assert grid.GetBounds()[4:] == (1.5, 1.5)
+    again, fields = vtk.from_vtk(grid)
+    assert again.z == 1.5
+    assert np.array_equal(fields["v"].values, mesh.points)
+    pixels = vtkImageData()
+    pixels.SetDimensions(4, 3, 1)
+    pixels.SetOrigin(0, 0, 1.5)
+    split, _, report = from_vtk_with_report(pixels)
+    assert (split.z, split.n_cells, report.split_elements) == (1.5, 12, 6)
+    assert anistar.validate(again, high) == anistar.validate(split) == []
+
+
+def test_the_filter_keeps_to_the_curved_edges_of_a_grid(tmp_path):
+    curved = of_second_order(square(2), lambda x: x + 0.05 * np.sin(np.pi * x[::-1]))
+    curved.point_data["u"] = np.tanh(5 * curved.points[:, 0])
+    curved.write(tmp_path / "m.vtu")
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(tmp_path / "m.vtu"))
+    adapted = vtk.vtkAnistarAdapt()
+    adapted.set_options(target_complexity=100)
+    adapted.SetInputConnection(reader.GetOutputPort())
+    adapted.Update()
+    new, _ = vtk.from_vtk(adapted.GetOutputDataObject(0))
+    outline = np.minimum(new.points, 1 - new.points)[np.unique(new.facets)]
+    assert np.count_nonzero(np.abs(outline).min(axis=1) > 0.02) > 8
+    assert anistar.validate(new) == []

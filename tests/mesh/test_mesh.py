@@ -191,3 +191,13 @@ def test_a_ridge_that_is_no_edge_is_named():
     base = cube(1)
     with pytest.raises(ValueError, match="edge 1 is not an edge of any cell"):
         Mesh(points=base.points, cells=base.cells, edges=[[0, 1], [1, 2]])
+
+
+def test_the_height_of_a_plane_is_kept_and_checked():
+    mesh = square(1)
+    assert Mesh(**(mesh.arrays() | {"z": 3})).z == 3.0
+    assert mesh.z == 0.0
+    with pytest.raises(ValueError, match="z, the height of the plane of a 2D mesh, is nan"):
+        Mesh(**(mesh.arrays() | {"z": float("nan")}))
+    with pytest.raises(ValueError, match="a 3D mesh has none, not 1"):
+        Mesh(**(cube(1).arrays() | {"z": 1.0}))

@@ -36,6 +36,7 @@ OPTIONAL = {
     "dolfinx": "dolfinx",
     "ngsolve": "ngsolve",
     "mfem": "mfem",
+    "h5py": "hdf5",
     "mmgpy": "bench",
 }
 

@@ -24,7 +24,7 @@ from ..metric import from_fields
 from ..metric.base.by_name import by_name, require_numbers
 from ..metric.base.told import Told
 from ..metric.pipeline.scaling import Scale, scale_of
-from ..objects import AnyMesh, as_mesh, made, opened, values_of
+from ..objects import AnyMesh, as_geometry, made, opened, values_of
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
 from ..remeshing.remesh import remesh
@@ -249,7 +249,7 @@ def unsteady_loop(
     if options.adapt.metric.has_count:
         target = options.adapt.metric.complexity_for(first.dim)
         check_targets(first, options.adapt.metric, [target], options.adapt.remesh)
-    outline = (held.geometry or first) if geometry is None else as_mesh(geometry, "geometry")
+    outline = (held.geometry or first) if geometry is None else as_geometry(geometry)
     shape = _Shape(first, outline, project)
     advance = advance if like is None else advancing_on(advance, like)
     now = Instant(instants[0], first, dict(fields(first) if callable(fields) else fields))

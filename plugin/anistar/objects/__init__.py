@@ -1,7 +1,7 @@
 """The objects that users hold: meshes of other packages, read as `Mesh` and made of one."""
 
 from ..metric.base.mesh import AnyMesh
-from .forms import Content, Form, as_mesh, form_names, opened, register, values_of
+from .forms import Content, Form, as_geometry, as_mesh, form_names, opened, register, values_of
 from .making import made
 from .metrics import metric_in, metric_on
 
@@ -9,6 +9,7 @@ __all__ = [
     "AnyMesh",
     "Content",
     "Form",
+    "as_geometry",
     "as_mesh",
     "form_names",
     "made",

@@ -146,6 +146,12 @@ def as_mesh(obj: AnyMesh, name: str = "mesh") -> Mesh:
     return obj if isinstance(obj, Mesh) else opened(obj, name).mesh
 
 
+def as_geometry(obj: AnyMesh) -> Mesh:
+    """Return the mesh whose facets an object gives as the shape: its curved edges count."""
+    held = opened(obj, "geometry")
+    return held.geometry or held.mesh
+
+
 def _import_adapter(package: str) -> None:
     adapter = _ADAPTERS.get(package)
     if adapter is not None:

@@ -15,12 +15,12 @@ from ...meshes.mesh import Mesh
 from ...metric import from_fields
 from ...remeshing.remesh import remesh
 from ...transfer import transfer
-from .grids import from_vtk, to_vtk
+from .grids import from_vtk_with_report, to_vtk
 
 METRIC = "metric"
 
 MeshAndFields = tuple[Mesh, dict[str, Field]]
-Make = Callable[[Mesh, dict[str, Field]], MeshAndFields]
+Make = Callable[[Mesh, dict[str, Field], Mesh | None], MeshAndFields]
 
 
 class _AnistarFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]  # VTK has no types
@@ -63,8 +63,8 @@ class _AnistarFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]  # VTK has n
         grid = vtkUnstructuredGrid.GetData(inputs[0], 0)
         output = vtkUnstructuredGrid.GetData(outputs, 0)
         try:
-            mesh, fields = from_vtk(grid)
-            output.ShallowCopy(to_vtk(*make(mesh, fields)))
+            mesh, fields, report = from_vtk_with_report(grid)
+            output.ShallowCopy(to_vtk(*make(mesh, fields, report.geometry)))
         except Exception as error:
             self.error = str(error)
             output.Initialize()
@@ -97,7 +97,9 @@ class vtkAnistarMetric(_AnistarFilter):  # noqa: N801
         """Make the metric when VTK asks for the output."""
         return self._run(self._with_metric, inputs, outputs)
 
-    def _with_metric(self, mesh: Mesh, fields: Mapping[str, Field]) -> MeshAndFields:
+    def _with_metric(
+        self, mesh: Mesh, fields: Mapping[str, Field], geometry: Mesh | None
+    ) -> MeshAndFields:
         options = self._adapt_options().metric
         metric, _ = from_fields(mesh, _arrays(self._metric_sources(fields)), options)
         return mesh, {**fields, METRIC: Field(metric)}
@@ -115,14 +117,16 @@ class vtkAnistarAdapt(_AnistarFilter):  # noqa: N801
         """Adapt the grid when VTK asks for the output."""
         return self._run(self._adapted, inputs, outputs)
 
-    def _adapted(self, mesh: Mesh, fields: Mapping[str, Field]) -> MeshAndFields:
+    def _adapted(
+        self, mesh: Mesh, fields: Mapping[str, Field], geometry: Mesh | None
+    ) -> MeshAndFields:
         options = self._adapt_options()
         given = fields.get(METRIC)
         if given is None or given.kind != "tensor":
-            done = adapt(mesh, fields, options)
+            done = adapt(mesh, fields, options, geometry=geometry)
             return done.mesh, dict(done.fields)
         others = {name: field for name, field in fields.items() if name != METRIC}
-        made = remesh(mesh, given.values, options.remesh)
+        made = remesh(mesh, given.values, options.remesh, geometry=geometry)
         got = transfer(mesh, others, made.mesh, options.transfer)
         return made.mesh, {**got.fields, METRIC: Field(made.metric)}
 

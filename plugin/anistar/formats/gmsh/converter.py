@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 
 from ...base.errors import FormatError
+from ...base.extras import install_command
 from ..content.raw import RawMesh
 from . import reader
 
@@ -54,7 +55,7 @@ def read(path: Path) -> RawMesh:
         if done.returncode == _MISSING:
             raise FormatError(
                 f"cannot read {path}: files {path.suffix} are read by the package gmsh, which is "
-                f"missing: {sys.executable} -m pip install gmsh"
+                f"missing: {install_command('gmsh')}"
             )
         if done.returncode != 0 or not converted.is_file():
             said = done.stderr.strip().splitlines() or [f"it ended with {done.returncode}"]

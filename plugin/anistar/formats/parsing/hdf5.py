@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import AnyArray
+from ...base.extras import install_command
 from .allowance import Allowance
 
 
@@ -27,8 +27,7 @@ def library() -> Any:
         import h5py
     except ImportError as error:
         raise ValueError(
-            "its numbers are in HDF5, for which h5py is missing: "
-            f"{sys.executable} -m pip install h5py"
+            f"its numbers are in HDF5, for which h5py is missing: {install_command('hdf5')}"
         ) from error
     return h5py
 
