@@ -89,6 +89,7 @@ def test_files_without_instants_have_none_to_choose(tmp_path):
         ("run_001.vtu", "../run_001.vtu", "which is not in its folder"),
         ("run_001.vtu", "/run_001.vtu", "which is not in its folder"),
         ("run_001.vtu", "run_001.pvtu", "only VTU is read"),
+        ("run_002.vtu", "run_005.vtu", r"run\.pvd: it lists 'run_005.vtu', which is not there"),
         ('timestep="0.5"', 'timestep="0.0"', "several files at one time"),
         ('"Collection"', '"ImageData"', "it is no collection"),
     ],

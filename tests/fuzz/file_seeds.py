@@ -4,13 +4,15 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
+import meshio
 import numpy as np
 from foreign_files import GMSH, MESHIO, gmsh_4, sample, write_with_meshio
+from formats.test_element_kinds import of_second_order
 from meshes import square, two_region_cube, two_regions
 
 from anistar import Field, formats
 
-OWN = (".mesh", ".meshb", ".msh", ".vtu", ".vtk", ".xdmf", ".su2")
+OWN = (".mesh", ".meshb", ".msh", ".vtu", ".vtk", ".xdmf", ".su2", ".pvd")
 WITHOUT_FIELDS = (".su2",)
 ABAQUS = """*HEADING
 two triangles and a line
@@ -89,6 +91,26 @@ def _foreign(folder):
         yield kind, _taken(folder, suffix)
     for kind in GMSH:
         yield f"gmsh {kind}", {"m.msh": gmsh_4(mesh, kind)}
+    for suffix in (".vtu", ".vtk", ".mesh", ".xdmf"):
+        _mixed().write(
+            folder / f"m{suffix}", **({"data_format": "XML"} if suffix == ".xdmf" else {})
+        )
+        yield f"all kinds in {suffix}", _taken(folder, suffix)
+    of_second_order(mesh, lambda x: x + 0.01).write(folder / "m.vtu")
+    yield "second order", _taken(folder, ".vtu")
+
+
+def _mixed():
+    """A hexahedron with a pyramid below and a prism beside it, and quadrilaterals on it."""
+    box = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    points = np.array([*box, (0.5, 0.5, -1), (2, 0, 0), (2, 0, 1)], float)
+    cells = [
+        ("hexahedron", [range(8)]),
+        ("pyramid", [[3, 2, 1, 0, 8]]),
+        ("wedge", [[1, 9, 2, 5, 10, 6]]),
+        ("quad", [[4, 5, 6, 7], [0, 3, 7, 4]]),
+    ]
+    return meshio.Mesh(points, cells, point_data={"u": points[:, 0]})
 
 
 def _taken(folder, suffix):

@@ -58,7 +58,10 @@ def _entry(element: Element) -> tuple[float, str]:
 
 
 def _content(path: Path, names: Sequence[str], number: int) -> RawMesh:
-    return vtu_reader.read(path.parent / names[number])
+    listed = path.parent / names[number]
+    if not listed.is_file():
+        raise FormatError(f"cannot read {path}: it lists {names[number]!r}, which is not there")
+    return vtu_reader.read(listed)
 
 
 def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
