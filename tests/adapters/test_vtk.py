@@ -261,6 +261,12 @@ class FilterOfParaView:
     def __setattr__(self, name, value):
         getattr(self.filter, f"Set{name}")(value)
 
+    def UpdatePipeline(self):
+        self.filter.Update()
+
+    def GetDataInformation(self):
+        return self.filter.GetOutputDataObject(0)
+
 
 def test_the_script_for_paraview_adapts_a_file(paraview, monkeypatch, tmp_path):
     """In VTK's pipeline, through the few calls that the script makes."""

@@ -103,8 +103,8 @@ def test_the_command_line_takes_names(tmp_path, monkeypatch):
             "frozen_tags: no facet is called 'wal'; the names are bottom, left, right, top",
         ),
         (
-            lambda m: anistar.adapt(m, front(m), target_complexity=9, size_at={"rigth": 0.1}),
-            "no facet is called 'rigth': did you mean 'right'",
+            lambda m: anistar.adapt(m, front(m), target_complexity=9, size_at={"rihgt": 0.1}),
+            "no facet is called 'rihgt': did you mean 'right'",
         ),
         (
             lambda m: anistar.adapt(m, front(m), target_complexity=9, size_at={"right": -1}),

@@ -234,5 +234,14 @@ def test_a_notebook_shows_bars_below_the_cell_and_takes_them_away(monkeypatch):
     assert last == ""
 
 
+def test_a_stream_that_can_only_be_written_to_is_no_terminal():
+    class Stream:  # as ParaView's
+        def write(self, text):
+            pass
+
+    assert screen_for(Stream(), is_wanted=False) is None
+    assert isinstance(screen_for(Stream(), is_wanted=True), LineScreen)
+
+
 def test_times_are_told_as_a_clock_does():
     assert [clock(s) for s in (0.4, 59.6, 3599, 3661)] == ["0:00", "1:00", "59:59", "1:01:01"]

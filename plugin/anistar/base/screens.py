@@ -79,9 +79,10 @@ def screen_for(stream: TextIO | None, *, is_wanted: bool) -> Screen | None:
         return None  # its brothers write to the same terminal
     if _is_notebook():
         return NotebookScreen()
-    if stream is None or stream.closed:
+    # A program that embeds Python, such as ParaView, may put there what can only be written to.
+    if stream is None or getattr(stream, "closed", False):
         return None
-    if stream.isatty():
+    if hasattr(stream, "isatty") and stream.isatty():
         return TerminalScreen(stream)
     return LineScreen(stream) if is_wanted else None
 

@@ -24,6 +24,9 @@ def main(given: str, wanted: str, complexity: str, *arrays: str) -> None:
     adapted = simple.AnistarAdapt(Input=simple.OpenDataFile(given))
     adapted.TargetComplexity = float(complexity)
     adapted.PointArrays = " ".join(arrays)
+    adapted.UpdatePipeline()
+    if adapted.GetDataInformation().GetNumberOfCells() == 0:
+        raise SystemExit(f"{given} was not adapted; ParaView has printed why")
     simple.SaveData(wanted, adapted)
 
 
