@@ -66,7 +66,7 @@ wheel-test: wheel ## Try each of them as a new user would, in an environment of 
 	@packaging/try_archives.sh
 
 paraview-test: wheel ## Adapt and render in ParaView itself, with the wheel for its Python
-	@./bootstrap.sh wheel paraview
+	@./bootstrap.sh paraview
 	@packaging/try_paraview.sh
 
 # The sanitized builds go beside the ordinary one, which they do without. Python itself is not

@@ -105,7 +105,7 @@ downloads() { sed -n 's/^# Downloads about \(.*\)\.$/\1/p' "$1" | head -n 1; }
 
 install_requirements() { # install_requirements NAME
   local file=requirements/$1.txt wanted
-  [ -f "$file" ] || fail "there is no $file; known: demo development docs bench wheel"
+  [ -f "$file" ] || fail "there is no $file; known: demo docs bench wheel programs paraview"
   wanted=$(requirements_digest "$1")
   is_done "$1" "$wanted" && return
   say "installing $file (downloads about $(downloads "$file"), less what pip has kept)"
