@@ -261,10 +261,10 @@ class FilterOfParaView:
     def __setattr__(self, name, value):
         getattr(self.filter, f"Set{name}")(value)
 
-    def UpdatePipeline(self):
+    def UpdatePipeline(self):  # noqa: N802
         self.filter.Update()
 
-    def GetDataInformation(self):
+    def GetDataInformation(self):  # noqa: N802
         return self.filter.GetOutputDataObject(0)
 
 
