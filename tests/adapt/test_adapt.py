@@ -279,7 +279,9 @@ def test_a_mesh_that_was_stopped_above_its_cap_is_no_result(monkeypatch):
     found = remesh(mesh, np.tile(100 * np.eye(2), (mesh.n_points, 1, 1)))
     assert found.mesh.n_cells > 100
     limited = dataclasses.replace(found, report=dataclasses.replace(found.report, converged=False))
-    monkeypatch.setattr(import_module("anistar.loops.element_counts"), "remesh", lambda *_, **__: limited)
+    monkeypatch.setattr(
+        import_module("anistar.loops.element_counts"), "remesh", lambda *_, **__: limited
+    )
     asked = AdaptOptions(metric=MetricOptions(target_complexity=1e4, max_elements=100))
     with pytest.raises(MeshingError, match=f"{found.mesh.n_cells} elements exceed max_elements"):
         adapt(mesh, {"u": layer(mesh.points)}, asked)

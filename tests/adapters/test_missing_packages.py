@@ -118,3 +118,13 @@ def test_files_in_hdf5_say_what_reads_them(tmp_path, words):
     assert done.returncode == 2
     (line,) = done.stderr.splitlines()
     assert f"for which h5py is missing: {install_command('hdf5')}" in line
+
+
+def test_the_demo_in_3d_does_without_pictures_and_says_so(tmp_path):
+    words = ("demo", "--dim", "3", "--complexities", "60,90", "-o", "demo", "--quiet")
+    done = without("matplotlib", CALL, *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "no pictures: No module named 'matplotlib'" in done.stderr
+    names = {path.name for path in (tmp_path / "demo").iterdir()}
+    assert {"report.json", "front.pvd"} <= names
+    assert not any(name.endswith(".png") for name in names)

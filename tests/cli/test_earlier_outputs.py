@@ -7,7 +7,7 @@ from meshes import square
 
 from anistar.cli import main
 from anistar.demo import volume as demo_volume
-from anistar.demo.result import DEMO_FILES, PICTURES
+from anistar.demo.result import DEMO_FILES, PICTURES, VOLUME_PICTURES
 from anistar.formats import write
 from anistar.runs.own_files import OwnFiles
 
@@ -70,6 +70,7 @@ def test_demo_replaces_an_earlier_demo_only_when_told(folder, monkeypatch, capsy
     assert main(words.split()) == 0
     assert "anistar-demo-3d: 11 files of an earlier run removed" in capsys.readouterr().out
     new = {"report.json", "front.pvd", "front_000.vtu", "front_001.vtu", "front_002.vtu"}
+    new |= set(VOLUME_PICTURES)
     found = {path.name for path in Path("anistar-demo-3d").iterdir()}
     assert found == {*mine, *new}
     own = OwnFiles(Path("anistar-demo-3d"), DEMO_FILES).found()

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import pictures
 from ..base.arrays import Bools, Floats
 from ..base.report import write_json
+from ..base.telling import tell
 from ..judging.interpolation_error import l2_error
 from ..loops.loop import Loop, Step, adapt_loop
 from ..loops.loop_options import LoopOptions
@@ -68,6 +68,8 @@ def run_volume_demo(
 ) -> Demo:
     """Run the demo and leave meshes, fields, pictures and the report in a folder.
 
+    Without matplotlib there are no pictures, and that is logged.
+
     Parameters
     ----------
     folder : path
@@ -122,8 +124,13 @@ def _row(step: Step, coarse: Mesh) -> DemoRow:
 
 
 def _written(place: Path, loop: Loop, steps: Sequence[Step], rows: Sequence[DemoRow]) -> list[Path]:
+    files = write_series(place / "front.pvd", map(item_of, (loop.steps[0], *steps)))
+    try:
+        from .. import pictures
+    except ImportError as error:
+        tell([f"no pictures: {' '.join([str(error), *getattr(error, '__notes__', [])])}"])
+        return files
     first, last = loop.steps[0], steps[-1]
-    files = write_series(place / "front.pvd", map(item_of, (first, *steps)))
     overview, first_mesh, last_mesh, convergence = (place / name for name in VOLUME_PICTURES)
     pictures.volume_overview_picture(
         overview,
