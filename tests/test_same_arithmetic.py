@@ -25,6 +25,8 @@ MAY = {
     "anistar.adapters.vtk.glyphs:* *": PICTURE,
     "anistar.pictures.plane:* *": PICTURE,
     "anistar.pictures.volume:* *": PICTURE,
+    "anistar.views.scene:* *": PICTURE,
+    "anistar.views.web_view:* *": PICTURE,
     "anistar.demo.problem:* *": INPUT,
     "anistar.demo.volume:* *": INPUT,
     "anistar.loops.loop_options:LoopOptions.complexity_after **": EXACT,

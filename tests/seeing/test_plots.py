@@ -47,7 +47,6 @@ def test_meshes_and_results_are_drawn_in_2d_and_3d(plane, volume, tmp_path, back
     assert anistar.validate(volume.mesh, unit_cube(4)) == []
     plots = {
         "mesh": (plane.mesh.plot, {}),
-        "field": (plane.plot, {}),
         "clip": (plane.plot, {"colour": "v", "clip": "x"}),
         "cut": (volume.mesh.plot, {"colour": front(volume.mesh.points), "clip": (1, 1, 0)}),
         "proof": (anistar.certify(volume.mesh, volume.metric).plot, {"edges": False}),

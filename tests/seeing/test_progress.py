@@ -106,11 +106,12 @@ def test_the_environment_turns_the_display_off():
     assert on_a_terminal(300, ANISTAR_PROGRESS="0") == ("", "done\n")
 
 
-def test_an_exception_clears_the_display_before_it_is_told():
-    shown, stdout = on_a_terminal(600, end="raise RuntimeError('no more')")
+@pytest.mark.parametrize("error", ["RuntimeError", "KeyboardInterrupt"])
+def test_an_exception_clears_the_display_before_it_is_told(error):
+    shown, stdout = on_a_terminal(600, end=f"raise {error}('no more')")
     before, trace = shown.split("Traceback")
     assert is_clean(before)
-    assert "RuntimeError: no more" in trace
+    assert f"{error}: no more" in trace
     assert "\x1b[" not in trace
     assert stdout == ""
 
