@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base.arrays import AnyArray
+from ..meshes.topology import vector_lengths
 from .content.kinds import KINDS
 from .content.raw import Block, RawMesh
 from .parsing.allowance import Allowance
@@ -237,7 +238,7 @@ def _in_order(kind: str, rows: AnyArray, points: AnyArray) -> AnyArray:
     if kind != "line3" or len(rows) == 0:
         return rows
     first, second, third = (points[rows[:, i]] for i in range(3))
-    is_between = np.linalg.norm(third - first, axis=1) > np.linalg.norm(second - first, axis=1)
+    is_between = vector_lengths(third - first) > vector_lengths(second - first)
     return np.where(is_between[:, None], rows[:, [0, 2, 1]], rows)
 
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import AnyArray, Floats
+from ..meshes.topology import cell_determinants
 from .content.kinds import KINDS
 from .content.raw import Block, RawMesh, not_read
 from .parsing.allowance import Allowance
@@ -136,8 +137,8 @@ def _unmirrored(kind: str, rows: AnyArray, points: Floats) -> AnyArray:
     if kind not in _MIRRORED or points.shape[1] != 3 or not inside:
         return rows
     order, beside = _MIRRORED[kind]
-    sides = points[rows[:, beside]] - points[rows[:, :1]]
-    return rows[:, order] if (np.linalg.det(sides) < 0).all() else rows
+    corners = np.concatenate([rows[:, :1], rows[:, beside]], axis=1)
+    return rows[:, order] if (cell_determinants(points, corners) < 0).all() else rows
 
 
 def _groups(content: _Content) -> dict[int, list[str]]:

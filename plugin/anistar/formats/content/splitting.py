@@ -18,6 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.arrays import AnyArray, Floats
+from ...meshes.topology import cell_determinants, vector_lengths
 from .raw import Block
 
 # Faces of each kind by their vertices, around the face as seen from outside.
@@ -129,7 +130,7 @@ def _areas(corners: Floats) -> Floats:
 
 
 def _sides(corners: Floats) -> Floats:
-    return np.asarray(np.linalg.norm(corners - np.roll(corners, 1, axis=-2), axis=-1))
+    return vector_lengths(corners - np.roll(corners, 1, axis=-2))
 
 
 def _tetrahedra(block: Block, points: Floats) -> AnyArray:
@@ -154,9 +155,8 @@ def _tetrahedra(block: Block, points: Floats) -> AnyArray:
 
 def _signs(block: Block, tetrahedra: AnyArray, points: Floats) -> AnyArray:
     """Return the signs of the volumes of all parts; raise if those of a cell are not all alike."""
-    sides = points[tetrahedra[:, 1:]] - points[tetrahedra[:, :1]]
     with np.errstate(all="ignore"):  # flat cells are found later, in exact arithmetic
-        signs = np.sign(np.linalg.det(sides)).reshape(len(block.rows), -1)
+        signs = np.sign(cell_determinants(points, tetrahedra)).reshape(len(block.rows), -1)
     twisted = (signs.min(axis=1) < 0) & (signs.max(axis=1) > 0)
     if twisted.any():
         at = int(np.argmax(twisted))
