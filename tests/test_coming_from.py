@@ -13,7 +13,7 @@ from documents import ROOT
 import anistar
 from anistar.cli.main import parser
 from anistar.cli.options import canonical_flags
-from anistar.metric.pipeline.aliases import our_name
+from anistar.metric.base.aliases import our_name
 
 PAGE = (ROOT / "docs" / "coming-from.md").read_text()
 ROWS = [

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.aliases import advice, asks_nothing, flattened, our_name, our_value
 from ..base.arrays import Floats
 from ..base.by_name import by_name, require_numbers
 from ..laws.bounds import check_bounds
@@ -18,7 +19,6 @@ from ..laws.normalisation import check_p, check_target
 from ..recovery import RecoveryOptions
 from ..sources.size_at import SizeAt
 from ..tensors.combination import check_rule, check_step
-from .aliases import advice, asks_nothing, flattened, our_name, our_value
 from .scaling import Scale, check_scale
 
 Bound = float | Floats | Callable[[Floats], ArrayLike] | None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from ..metric.pipeline.aliases import (
+from ..metric.base.aliases import (
     MMG_ALIASES,
     advice,
     asks_nothing,

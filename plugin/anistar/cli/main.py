@@ -12,7 +12,7 @@ from typing import NoReturn
 from .. import __version__
 from ..base.errors import MeshingError
 from ..base.progress import quiet
-from ..metric.pipeline.aliases import advice
+from ..metric.base.aliases import advice
 from .commands import (
     adapt,
     check,

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 from ..base.option_names import MMG
 from ..loops.adapt_options import AdaptOptions
+from ..metric.base.aliases import PETSC_PREFIX, asks_nothing, our_name, our_value
 from ..metric.base.names import Tag
-from ..metric.pipeline.aliases import PETSC_PREFIX, asks_nothing, our_name, our_value
 from ..transfer import METHODS, OUTSIDE
 
 Number = TypeVar("Number", int, float)
