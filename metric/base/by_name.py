@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 from dataclasses import fields
 from typing import Any, TypeVar
 
 import numpy as np
+
+from .aliases import advice
 
 Class = TypeVar("Class", bound=type)
 
@@ -28,9 +29,7 @@ def by_name(cls: Class) -> Class:
                 f"the names are {', '.join(names)}"
             )
         for name in named.keys() - set(names):
-            near = difflib.get_close_matches(name, names, n=1)
-            advice = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(names)}"
-            raise TypeError(f"{cls.__name__} has no option {name!r}: {advice}")
+            raise TypeError(f"{cls.__name__} has no option {name!r}: {advice(name, names)}")
         plain(self, **named)
 
     cls.__init__ = init  # type: ignore[misc]

@@ -5,7 +5,7 @@ import anistar.metric
 
 ALLOWED = {"numpy", "scipy"}
 STANDARD = {
-    "__future__", "collections", "dataclasses", "difflib", "functools", "importlib", "itertools",
+    "__future__", "collections", "dataclasses", "difflib", "functools", "html", "importlib", "itertools",
     "logging", "math", "typing",
 }  # fmt: skip
 
