@@ -5,8 +5,8 @@ import anistar.metric
 
 ALLOWED = {"numpy", "scipy"}
 STANDARD = {
-    "__future__", "collections", "dataclasses", "difflib", "functools", "html", "importlib", "itertools",
-    "logging", "math", "typing",
+    "__future__", "collections", "dataclasses", "difflib", "functools", "html", "importlib",
+    "itertools", "logging", "math", "typing",
 }  # fmt: skip
 
 

@@ -33,7 +33,7 @@ def test_a_mesh_is_made_of_points_and_cells_by_position():
         (
             lambda: RemeshOptions(xyz=9),
             TypeError,
-            "RemeshOptions has no option 'xyz': known: max_vertices,",
+            "RemeshOptions has no option 'xyz': known: agreement, callback,",
         ),
         (
             lambda: MetricOptions(target_complexity="1000"),
