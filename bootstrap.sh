@@ -121,7 +121,7 @@ source_digest() {
   {
     "$VENV/bin/python" --version
     find CMakeLists.txt pyproject.toml README.md LICENSE metric plugin -type f \
-      \( -name '*.py' -o -name '*.pyi' -o -name py.typed -o -name '*.cpp' -o -name '*.h' \
+      \( -name '*.py' -o -name '*.pyi' -o -name '*.js' -o -name py.typed -o -name '*.cpp' -o -name '*.h' \
       -o -name CMakeLists.txt -o -name pyproject.toml -o -name README.md -o -name LICENSE \) \
       -print0 | LC_ALL=C sort -z | xargs -0 sha256sum
   } | digest
