@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats, Ints
 from ..base.extras import install_command
+from ..formats.content.second_order import geometry_through
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
 from ..objects import Content, Form, register
@@ -28,6 +29,9 @@ try:
 except ImportError as error:
     error.add_note(f"anistar's dolfinx adapter needs it: {install_command('dolfinx')}")
     raise
+
+# Nodes of cells of second order in the middle of edges: dolfinx counts edges by what is opposite.
+_MIDDLES = {2: [5, 3, 4], 3: [9, 6, 8, 7, 5, 4]}
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +119,7 @@ def from_dolfinx(
     Parameters
     ----------
     domain : dolfinx.mesh.Mesh
-        Linear triangles in 2D or tetrahedra in 3D, on one process.
+        Triangles in 2D or tetrahedra in 3D, on one process; of second order the corners.
     cell_tags, facet_tags : dolfinx.mesh.MeshTags, optional
         Cells without a tag get 0.
     names : mapping of (dim, tag) to str, optional
@@ -132,7 +136,7 @@ def from_dolfinx(
     Raises
     ------
     TypeError
-        If the cells are not linear simplices that fill the space.
+        If the cells are not simplices of first or second order that fill the space.
     ValueError
         If the mesh is distributed.
     """
@@ -141,13 +145,13 @@ def from_dolfinx(
         raise ValueError(f"the mesh is on {domain.comm.size} processes; one is supported")
     if domain.topology.cell_name() not in ("triangle", "tetrahedron"):
         raise TypeError(f"cells are {domain.topology.cell_name()}s, not triangles or tetrahedra")
-    nodes = domain.geometry.dofmaps[0]
-    if domain.geometry.dim != dim or nodes.shape[1] != dim + 1:
-        raise TypeError("cells must be linear and fill the space: no surfaces, no P2 geometry")
-    given = np.asarray(domain.geometry.input_global_indices)
-    points = np.empty((len(given), dim))
-    points[given] = domain.geometry.x[:, :dim]
-    cells = given[nodes].astype(np.int32)
+    if domain.geometry.dim != dim or _order(domain) not in (1, 2):
+        raise TypeError("cells must be of order 1 or 2 and fill the space: no surfaces")
+    number = _numbers(domain)
+    nodes = _corner_nodes(domain)
+    points = np.empty((number.max() + 1, dim))
+    points[number[nodes]] = domain.geometry.x[nodes, :dim]
+    cells = number[nodes].astype(np.int32)
     inverted = cell_determinants(points, cells) < 0
     cells[inverted, -2:] = cells[inverted, :-3:-1]
     tags = np.zeros(len(cells), np.int32)
@@ -163,6 +167,37 @@ def from_dolfinx(
     if vertex_tags is not None:
         marked["corners"] = _entities(domain, 0)[vertex_tags.indices, 0]
     return Mesh(points=points, cells=cells, cell_tags=tags, names=names or {}, **marked)
+
+
+def curves_of(domain: Any, mesh: Mesh) -> Mesh | None:
+    """Return the geometry of a domain of second order, given the mesh of its corners, else None."""
+    if _order(domain) != 2:
+        return None
+    dim = domain.topology.dim
+    middles = domain.geometry.dofmaps[0][:, _MIDDLES[dim]]
+    cells = _numbers(domain)[_corner_nodes(domain)]
+    return geometry_through(mesh, cells, domain.geometry.x[middles, :dim])
+
+
+def _order(domain: Any) -> int:
+    return int(domain.geometry.cmaps[0].degree)
+
+
+def _corner_nodes(domain: Any) -> Ints:
+    """Return the nodes (m, d + 1) of the geometry at the corners of the cells."""
+    return np.asarray(domain.geometry.dofmaps[0][:, : domain.topology.dim + 1])
+
+
+def _numbers(domain: Any) -> Ints:
+    """Return the number in the `Mesh` of each node of the geometry, -1 where it is no corner.
+
+    Corners are in the order in which they were given to dolfinx.
+    """
+    given = np.asarray(domain.geometry.input_global_indices)
+    corners = np.unique(_corner_nodes(domain))
+    numbers = np.full(len(given), -1, np.int32)
+    numbers[corners[np.argsort(given[corners])]] = np.arange(len(corners))
+    return numbers
 
 
 def point_values(function: Any) -> Floats:
@@ -182,9 +217,9 @@ def point_values(function: Any) -> Floats:
     space = function.function_space
     nodes, dofs = _p1_maps(space)
     shape = _value_shape(space)
-    given = np.asarray(space.mesh.geometry.input_global_indices)
-    values = np.empty((len(given), *shape))
-    values[given[nodes]] = function.x.array.reshape(-1, *shape)[dofs]
+    number = _numbers(space.mesh)
+    values = np.empty((number.max() + 1, *shape))
+    values[number[nodes]] = function.x.array.reshape(-1, *shape)[dofs]
     return values
 
 
@@ -198,12 +233,12 @@ def to_function(space: Any, values: ArrayLike) -> Any:
     """
     nodes, dofs = _p1_maps(space)
     shape = _value_shape(space)
-    given = np.asarray(space.mesh.geometry.input_global_indices)
-    array = np.asarray(values, dtype=np.float64)
-    if array.shape != (len(given), *shape):
-        raise ValueError(f"values of shape {array.shape}, not {(len(given), *shape)}")
+    number = _numbers(space.mesh)
+    array, wanted = np.asarray(values, dtype=np.float64), (int(number.max()) + 1, *shape)
+    if array.shape != wanted:
+        raise ValueError(f"values of shape {array.shape}, not {wanted}")
     function = dolfinx.fem.Function(space)
-    function.x.array.reshape(-1, *shape)[dofs] = array[given[nodes]]
+    function.x.array.reshape(-1, *shape)[dofs] = array[number[nodes]]
     return function
 
 
@@ -216,9 +251,9 @@ def _value_shape(space: Any) -> tuple[int, ...]:
 
 
 def _p1_maps(space: Any) -> tuple[Ints, Ints]:
-    nodes, dofs = space.mesh.geometry.dofmaps[0], space.dofmap.list
+    nodes, dofs = _corner_nodes(space.mesh), space.dofmap.list
     dim = space.mesh.topology.dim
-    if dofs.shape != nodes.shape or space.dofmap.index_map.size_local != len(space.mesh.geometry.x):
+    if dofs.shape != nodes.shape or space.dofmap.index_map.size_local != len(np.unique(nodes)):
         raise TypeError(f"the space is not continuous P1: {dofs.shape[1]} unknowns in {dim}D cells")
     return nodes, dofs
 
@@ -229,12 +264,18 @@ def _entities(domain: Any, dim: int) -> Ints:
     domain.topology.create_connectivity(dim, domain.topology.dim)
     count = domain.topology.index_map(dim).size_local
     rows = dolfinx.mesh.entities_to_geometry(domain, dim, np.arange(count, dtype=np.int32))
-    return np.asarray(np.asarray(domain.geometry.input_global_indices)[rows], dtype=np.int32)
+    return np.asarray(_numbers(domain)[rows])
 
 
 def _read(other: Any) -> Content:
+    domain = other.domain if isinstance(other, DolfinxMesh) else other
+    mesh = _tagged(other)
+    return Content(mesh, {}, curves_of(domain, mesh))
+
+
+def _tagged(other: Any) -> Mesh:
     if isinstance(other, DolfinxMesh):
-        mesh = from_dolfinx(
+        return from_dolfinx(
             other.domain,
             other.cell_tags,
             other.facet_tags,
@@ -242,8 +283,7 @@ def _read(other: Any) -> Content:
             edge_tags=other.edge_tags,
             vertex_tags=other.vertex_tags,
         )
-        return Content(mesh, {})
-    return Content(from_dolfinx(other), {})
+    return from_dolfinx(other)
 
 
 def _make(mesh: Mesh, fields: Any, like: Any) -> Any:

@@ -54,6 +54,9 @@ def to_ngsolve(mesh: Mesh) -> Any:
 def from_ngsolve(other: Any) -> Mesh:
     """Return an `ngsolve.Mesh` of triangles or tetrahedra as a `Mesh`.
 
+    Of curved meshes these are the corners: Netgen's curves do not go through points of the
+    geometry, so that the smooth curve through the corners is the nearer one.
+
     Materials, boundaries and (3D) named edges become tags 1, 2, ... in NGSolve's order, with their
     names; several of one name become one tag. Named points become corners. Netgen has an edge
     and a point for each of the geometry; those without a name of their own are left out.
@@ -61,13 +64,13 @@ def from_ngsolve(other: Any) -> Mesh:
     Raises
     ------
     TypeError
-        If it is another object, or has other or curved cells, or is a surface.
+        If it is another object, or has other cells, or is a surface.
     """
     if not isinstance(other, ngsolve.Mesh):
         raise TypeError(f"an ngsolve.Mesh is needed, not {type(other).__name__}")
     netgen, dim = other.ngmesh, other.dim
-    if dim not in (2, 3) or other.GetCurveOrder() > 1:
-        raise TypeError(f"only straight meshes in 2D and 3D are supported, not {dim}D or curved")
+    if dim not in (2, 3):
+        raise TypeError(f"only meshes in 2D and 3D are supported, not {dim}D")
     points = np.array(netgen.Coordinates())[:, :dim]
     elements = {1: netgen.Elements1D, 2: netgen.Elements2D, 3: netgen.Elements3D}
     cells, cell_tags, names = _read(elements[dim]().NumPy(), dim, other.GetMaterials())

@@ -9,12 +9,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, Ints, Longs
 from ..base.extras import install_command
+from ..formats.content.second_order import geometry_through
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
 from ..objects import Content, Form, register
 
 try:
-    from skfem import MeshTet, MeshTri
+    from skfem import MeshTet, MeshTet2, MeshTri, MeshTri2
     from skfem.mesh import Mesh as SkfemMesh
 except ImportError as error:
     error.add_note(f"anistar's scikit-fem adapter needs it: {install_command('skfem')}")
@@ -54,7 +55,8 @@ def to_skfem(mesh: Mesh) -> Any:
 def from_skfem(other: Any) -> Mesh:
     """Return a `skfem.MeshTri` or `skfem.MeshTet` as a `Mesh`.
 
-    Boundaries and subdomains become tags 1, 2, ... in the order of their names, with these names.
+    Of meshes of second order these are the corners, see `curves_of` for their edges. Boundaries
+    and subdomains become tags 1, 2, ... in the order of their names, with these names.
 
     Raises
     ------
@@ -65,7 +67,7 @@ def from_skfem(other: Any) -> Mesh:
     """
     if not isinstance(other, MeshTri | MeshTet) or other.t.shape[0] != other.p.shape[0] + 1:
         raise TypeError(f"only MeshTri and MeshTet are supported, not {type(other).__name__}")
-    points, cells = np.asarray(other.p.T), np.array(other.t.T)
+    points, cells = np.asarray(other.p.T)[: other.nvertices], np.array(other.t.T)
     dim = points.shape[1]
     inverted = cell_determinants(points, cells) < 0
     cells[inverted, -2:] = cells[inverted, :-3:-1]
@@ -79,6 +81,20 @@ def from_skfem(other: Any) -> Mesh:
         facet_tags=facet_tags[chosen],
         names={**names, **regions},
     )
+
+
+def curves_of(other: Any, mesh: Mesh) -> Mesh | None:
+    """Return the geometry of a mesh of second order, given that of its corners, else None."""
+    if not isinstance(other, MeshTri2 | MeshTet2):
+        return None
+    corners = mesh.dim + 1
+    middles = other.doflocs.T[other.dofs.element_dofs[corners:].T]
+    return geometry_through(mesh, np.asarray(other.t.T), middles)
+
+
+def _content(other: Any) -> Content:
+    mesh = from_skfem(other)
+    return Content(mesh, {}, curves_of(other, mesh))
 
 
 def point_values(basis: Any, unknowns: ArrayLike) -> Floats:
@@ -170,7 +186,7 @@ register(
     Form(
         name="skfem",
         accepts=lambda obj: isinstance(obj, SkfemMesh),
-        read=lambda mesh: Content(from_skfem(mesh), {}),
+        read=_content,
         make=lambda mesh, fields, like: to_skfem(mesh),
     )
 )
