@@ -16,7 +16,8 @@ from .loops.loop import Loop, LoopError, Step, adapt_loop
 from .loops.loop_options import LoopOptions
 from .loops.settling import Settled
 from .loops.study import Study, convergence_study
-from .loops.unsteady import UnsteadyOptions, unsteady_loop
+from .loops.unsteady import unsteady_loop
+from .loops.unsteady_options import UnsteadyOptions
 from .meshes.fields import Field
 from .meshes.mesh import Mesh
 from .meshes.validation import validate

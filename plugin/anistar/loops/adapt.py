@@ -160,7 +160,9 @@ def adapt_to(
         line.expected_seconds = known - started + expected.seconds
         ledger, done, corrections = made_to_count(mesh, chosen, options, wanted, geometry, project)
         if ledger.is_featureless:
-            tell([f"no second derivative above the noise in {', '.join(names)}: the mesh is uniform"])
+            tell(
+                [f"no second derivative above the noise in {', '.join(names)}: the mesh is uniform"]
+            )
         line.enter("transfer", note=f"{done.mesh.n_points:,} points")
         carried = transfer(mesh, fields, done.mesh, options.transfer)
         line.enter("certificate")
