@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TypeAlias
+from operator import index
+from typing import TypeAlias, cast
 
 import numpy as np
 
@@ -42,12 +43,7 @@ def tags_called(
     found: list[int] = []
     there = set(np.unique(present).tolist())
     for one in _listed(wanted):
-        if isinstance(one, str):
-            tags = [tag for (d, tag), name in names.items() if d == dim and name == one]
-            if not tags:
-                raise ValueError(unknown_name(one, names, dim, kind))
-        else:
-            tags = [int(one)]
+        tags = _tags_of_name(one, names, dim, there, kind) if isinstance(one, str) else [index(one)]
         missing = sorted(set(tags) - there)
         if len(missing) == len(tags):
             raise ValueError(
@@ -56,6 +52,20 @@ def tags_called(
             )
         found += tags
     return found
+
+
+def _tags_of_name(name: str, names: Names, dim: int, there: set[int], kind: str) -> list[int]:
+    """Return the tags with a name; digits that are no name are a tag, as on a command line."""
+    tags = [tag for (d, tag), known in names.items() if d == dim and known == name]
+    as_tag = int(name) if name.lstrip("-").isdecimal() else None
+    if tags and as_tag in there and as_tag not in tags:
+        raise ValueError(
+            f"{name!r} is the name of the {kind}s with tag {tags[0]}, and another tag: say which "
+            "by a name of its own, or in Python by the number"
+        )
+    if not tags and as_tag is None:
+        raise ValueError(unknown_name(name, names, dim, kind))
+    return tags or [cast(int, as_tag)]
 
 
 def unknown_name(name: str, names: Names, dim: int, kind: str) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..base.arrays import Floats
 from ..base.mesh import MeshLike, names_of
-from ..base.names import Tag, tags_called
+from ..base.names import Tag, tags_called, unknown_name
 from .size_fields import size_near_boundary
 
 SizeAt = Mapping[Tag, float]
@@ -38,6 +38,9 @@ def sizes_at(mesh: MeshLike, sizes: SizeAt, growth: float | None) -> Floats:
         if not (np.isfinite(h) and h > 0.0):
             raise ValueError(f"the size at {called!r} must be positive and finite, got {h}")
         dims = {d for (d, _), name in names.items() if name == called}
+        if isinstance(called, str) and not dims & {dim, dim - 1} and not called.isdecimal():
+            both = {(dim, k): name for k, name in enumerate(names.values())}
+            raise ValueError(unknown_name(called, both, dim, "facet or region"))
         if dim in dims:
             tags = tags_called(called, names, dim, mesh.cell_tags, kind="cell")
             inside = mesh.cells[np.isin(mesh.cell_tags, tags)]

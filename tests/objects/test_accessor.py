@@ -49,6 +49,33 @@ def test_the_order_of_imports_does_not_matter(order):
     assert done.stdout.strip() == "121"
 
 
+@pytest.mark.parametrize(
+    "looked",
+    ["importlib.util.find_spec('pyvista')", "importlib.util.find_spec('pyvista').loader.name"],
+)
+def test_looking_for_the_package_changes_nothing(looked):
+    program = (
+        f"import importlib.util, sys, anistar\n{looked}\nimport pyvista\n"
+        "print(pyvista.Plane().triangulate().anistar.mesh.n_points)\n"
+        "print(type(pyvista.__loader__).__name__, type(pyvista.__spec__.loader).__name__)\n"
+        "print([1 for finder in sys.meta_path if type(finder).__name__ == '_Watch'])"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split("\n")[:3] == ["121", "SourceFileLoader SourceFileLoader", "[]"]
+
+
+def test_an_accessor_that_cannot_be_made_does_not_stop_the_package():
+    program = (
+        "import sys, anistar\nsys.modules['anistar.adapters.vtk.accessor'] = None\n"
+        "import pyvista\nprint(pyvista.Plane().n_points)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == "121"
+    assert "pyvista has no accessor of anistar" in done.stderr
+
+
 def test_a_package_that_is_missing_stays_missing():
     program = (
         "import sys\n"

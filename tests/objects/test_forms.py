@@ -67,8 +67,88 @@ def test_a_mesh_without_fields_comes_back_beside_them(form):
     assert type(other) is type(given)
     again = objects.as_mesh(other)
     assert anistar.validate(again) == []
-    assert fields["u"].shape == (again.n_points,)
+    assert len(objects.values_of(fields["u"])) == again.n_points
     assert tags_by_name(again).keys() == set(mesh.names.values())
+
+
+def values_on(form, other, fields):
+    """A field and where the package itself says that its values are."""
+    if form == "dolfinx":
+        return other.domain.geometry.x[:, :2], fields["u"].x.array
+    if form == "skfem":
+        return other.p.T, fields["u"]
+    if form == "ngsolve":
+        return np.array([vertex.point for vertex in other.vertices]), fields["u"]
+    return np.array(other.GetVertexArray())[:, :2], fields["u"]
+
+
+@pytest.mark.parametrize("form", BARE)
+def test_values_stand_where_the_package_says_its_points_are(form):
+    mesh = square(12)
+    linear = mesh.points @ [1.0, 10.0]
+    given = objects.made(mesh, {}, form)
+    _, fields = objects.made(mesh, {"u": linear}, form)
+    done = anistar.adapt(given, {"v": front(mesh), "u": linear}, target_complexity=90)
+    other, fields = done.to(form)
+    places, values = values_on(form, other, fields)
+    assert np.allclose(values, places @ [1.0, 10.0])
+
+
+def test_solvers_of_dolfinx_get_functions_and_may_return_them():
+    from anistar.adapters import dolfinx as adapter
+
+    fem = adapter.dolfinx.fem
+    seen = []
+
+    def solve(domain, fields):
+        for name, function in fields.items():
+            x = adapter.dolfinx.fem.Function(function.function_space)
+            x.interpolate(lambda points: points[0] + 10 * points[1])
+            seen.append((name, abs(function.x.array - x.x.array).max()))
+        u = fem.Function(fem.functionspace(domain, ("Lagrange", 1)))
+        u.interpolate(lambda points: points[0] + 10 * points[1])
+        means = fem.Function(fem.functionspace(domain, ("DG", 0)))
+        means.interpolate(lambda points: points[0] + 10 * points[1])
+        return {"u": u, "means": means}
+
+    first = objects.made(square(8), {}, "dolfinx")
+    loop = anistar.adapt_loop(solve, first.domain, complexities=(50, 80), like=first.domain)
+    last = loop.steps[-1]
+    assert anistar.validate(last.mesh) == []
+    assert [name for name, _ in seen] == ["u", "means"] * 2
+    assert max(off for name, off in seen if name == "u") < 1e-9
+    assert max(off for name, off in seen if name == "means") < 3  # interpolated: not exact
+    centres = last.mesh.points[last.mesh.cells].mean(axis=1)
+    assert np.allclose(last.fields["means"].values, centres @ [1.0, 10.0])
+    assert np.allclose(last.fields["u"], last.mesh.points @ [1.0, 10.0])
+
+
+def test_fields_that_are_given_beside_those_of_an_object_need_not_all_make_a_metric():
+    mesh = square()
+    held = objects.made(mesh, {"carried": mesh.points[:, 0]}, "meshio")
+    given = {"u": front(mesh), "ids": np.arange(mesh.n_points)}
+    done = anistar.adapt(held, given, target_complexity=50)
+    assert done.report.metric_fields == ("u",)
+    assert set(done.fields) == {"u", "ids", "carried"}
+
+
+def test_problems_in_time_take_the_fields_of_an_object_by_name():
+    mesh = square(8)
+    grid = objects.made(mesh, {"u": front(mesh), "w": mesh.points[:, 0]}, "meshio")
+    seen = []
+
+    def advance(other, fields, begin, end):
+        seen.append(type(other))
+        return fields
+
+    done = anistar.unsteady_loop(
+        advance, grid, "u", [0, 1, 2], window=1, target_complexity=60, like=grid
+    )
+    assert anistar.validate(done.last.mesh) == []
+    assert set(done.last.fields) == {"u"}
+    assert set(seen) == {meshio.Mesh}
+    again = anistar.unsteady_loop(advance, mesh, front(mesh), [0, 1], target_complexity=60)
+    assert set(again.last.fields) == {"u"}
 
 
 def test_functions_of_finite_element_packages_are_read_at_the_points():

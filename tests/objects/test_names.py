@@ -92,6 +92,32 @@ def test_the_command_line_takes_names(tmp_path, monkeypatch):
     assert main(["metric", "in.vtu", "--size-at-tag", "hole small,0.05", "-o", "m.sol"]) == 0
 
 
+def test_names_with_commas_and_digits_are_told_from_tags(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    plain = square()
+    names = {(1, 1): "wall, left", (1, 2): "3", (1, 4): "7"}
+    mesh = anistar.Mesh(**{**plain.arrays(), "names": names})
+    assert np.array_equal(mesh.facets_of("7"), mesh.facets_of(4))
+    assert np.array_equal(mesh.facets_of("1"), mesh.facets_of(1))
+    with pytest.raises(ValueError, match="'3' is the name of the facets with tag 2, and another"):
+        mesh.facets_of("3")
+    with pytest.raises(TypeError, match="cannot be interpreted as an integer"):
+        mesh.facets_of(0.9)
+    anistar.write("in.vtu", mesh, {"u": front(mesh)})
+    words = ["adapt", "in.vtu", "--target-complexity", "80", "-o", "out.vtu"]
+    assert main([*words, "--frozen", '"wall, left",7', "--size-at", '"wall, left=0.5"']) == 0
+    new, _ = anistar.read("out.vtu")
+    assert anistar.validate(new) == []
+    assert len(new.facets_of("wall, left")) == len(new.facets_of("7")) == 4
+
+
+def test_sizes_at_unknown_names_suggest_regions_too():
+    plain = two_regions()
+    mesh = anistar.Mesh(**{**plain.arrays(), "names": {(2, 1): "steel", (2, 2): "air"}})
+    with pytest.raises(ValueError, match="no facet or region is called 'stel': did you mean 'stee"):
+        anistar.adapt(mesh, front(mesh), target_complexity=9, size_at={"stel": 0.1})
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
@@ -104,7 +130,7 @@ def test_the_command_line_takes_names(tmp_path, monkeypatch):
         ),
         (
             lambda m: anistar.adapt(m, front(m), target_complexity=9, size_at={"rihgt": 0.1}),
-            "no facet is called 'rihgt': did you mean 'right'",
+            "no facet or region is called 'rihgt': did you mean 'right'",
         ),
         (
             lambda m: anistar.adapt(m, front(m), target_complexity=9, size_at={"right": -1}),

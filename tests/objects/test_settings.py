@@ -69,6 +69,15 @@ def test_a_loop_takes_its_own_settings_and_those_of_its_adaptations():
     assert replaced.adapt.remesh.ridge_angle == 20.0
 
 
+def test_the_transfer_of_a_problem_in_time_is_bounded_until_another_is_asked_for():
+    chosen = anistar.UnsteadyOptions.chosen
+    assert chosen(None, {}).adapt.transfer.method == "bounded"
+    assert chosen(None, {"outside": "raise"}).adapt.transfer == TransferOptions(method="bounded")
+    assert chosen(None, {"transfer": {"method": "interpolate"}}).adapt.transfer.method == (
+        "interpolate"
+    )
+
+
 def test_the_other_calls_take_settings_too():
     mesh = square()
     M, _ = anistar.metric.from_fields(mesh, front(mesh), target_complexity=60)

@@ -6,6 +6,7 @@ dolfinx renumbers points and cells; everything here goes through its maps back t
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +16,7 @@ from numpy.typing import ArrayLike
 from ..base.arrays import Floats, Ints
 from ..base.extras import install_command
 from ..formats.content.second_order import geometry_through
+from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
 from ..objects import Content, Form, register
@@ -80,7 +82,7 @@ def to_dolfinx(mesh: Mesh) -> DolfinxMesh:
         MPI.COMM_SELF, mesh.cells.astype(np.int64), element, np.array(mesh.points)
     )
     cells = np.arange(mesh.n_cells, dtype=np.int32)
-    original = np.asarray(domain.topology.original_cell_index)
+    original = _original_cells(domain)
     return DolfinxMesh(
         domain=domain,
         cell_tags=dolfinx.mesh.meshtags(domain, mesh.dim, cells, mesh.cell_tags[original]),
@@ -131,7 +133,8 @@ def from_dolfinx(
     Returns
     -------
     Mesh
-        Points in the order that `point_values` uses: the one in which they were given to dolfinx.
+        Points and cells in the order in which they were given to dolfinx, as those of
+        `point_values` and `cell_values`.
 
     Raises
     ------
@@ -151,12 +154,14 @@ def from_dolfinx(
     nodes = _corner_nodes(domain)
     points = np.empty((number.max() + 1, dim))
     points[number[nodes]] = domain.geometry.x[nodes, :dim]
-    cells = number[nodes].astype(np.int32)
+    original = _original_cells(domain)
+    cells = np.empty(nodes.shape, np.int32)
+    cells[original] = number[nodes]
     inverted = cell_determinants(points, cells) < 0
     cells[inverted, -2:] = cells[inverted, :-3:-1]
     tags = np.zeros(len(cells), np.int32)
     if cell_tags is not None:
-        tags[cell_tags.indices] = cell_tags.values
+        tags[original[cell_tags.indices]] = cell_tags.values
     marked: dict[str, Any] = {}
     if facet_tags is not None:
         marked["facets"] = _entities(domain, dim - 1)[facet_tags.indices]
@@ -186,6 +191,13 @@ def _order(domain: Any) -> int:
 def _corner_nodes(domain: Any) -> Ints:
     """Return the nodes (m, d + 1) of the geometry at the corners of the cells."""
     return np.asarray(domain.geometry.dofmaps[0][:, : domain.topology.dim + 1])
+
+
+def _original_cells(domain: Any) -> Ints:
+    """Return the place of each cell in the order in which cells were given to dolfinx."""
+    original = np.asarray(domain.topology.original_cell_index, dtype=np.int32)
+    count = len(domain.geometry.dofmaps[0])
+    return original if len(original) == count else np.arange(count, dtype=np.int32)
 
 
 def _numbers(domain: Any) -> Ints:
@@ -240,6 +252,57 @@ def to_function(space: Any, values: ArrayLike) -> Any:
     function = dolfinx.fem.Function(space)
     function.x.array.reshape(-1, *shape)[dofs] = array[number[nodes]]
     return function
+
+
+def cell_values(function: Any) -> Floats:
+    """Return the values (m, ...) of a function that is constant in each cell.
+
+    They are in the order of the cells of the `Mesh` that the domain was made of.
+
+    Raises
+    ------
+    TypeError
+        If the function is not constant in each cell.
+    """
+    space = function.function_space
+    dofs, shape = space.dofmap.list, _value_shape(space)
+    if dofs.shape[1] != 1:
+        raise TypeError(f"the space is not constant in cells: {dofs.shape[1]} unknowns in each")
+    values = np.empty((len(dofs), *shape))
+    values[_original_cells(space.mesh)] = function.x.array.reshape(-1, *shape)[dofs[:, 0]]
+    return values
+
+
+def to_functions(domain: Any, fields: Mapping[str, Field | ArrayLike]) -> dict[str, Any]:
+    """Return fields of the `Mesh` that a domain was made of as functions on it.
+
+    dolfinx has an order of its own, so that arrays would be taken for others. Values at points
+    become P1 functions, values in cells constant ones; labels and values at the nodes of cells
+    stay as they are, in the order of the mesh.
+    """
+    placed: dict[str, Any] = {}
+    for name, given in fields.items():
+        field = given if isinstance(given, Field) else Field(np.asarray(given))
+        shape = field.values.shape[1:]
+        if field.kind == "label" or field.on == "cell_nodes":
+            placed[name] = given
+        elif field.on == "points":
+            space = dolfinx.fem.functionspace(domain, ("Lagrange", 1, shape))
+            placed[name] = to_function(space, field.values)
+        else:
+            space = dolfinx.fem.functionspace(domain, ("DG", 0, shape))
+            function = dolfinx.fem.Function(space)
+            values = field.values[_original_cells(domain)]
+            function.x.array.reshape(-1, *shape)[space.dofmap.list[:, 0]] = values
+            placed[name] = function
+    return placed
+
+
+def _values(obj: object) -> Any | None:
+    if not isinstance(obj, dolfinx.fem.Function):
+        return None
+    is_constant = obj.function_space.dofmap.list.shape[1] == 1
+    return Field(cell_values(obj), "cells") if is_constant else point_values(obj)
 
 
 def _value_shape(space: Any) -> tuple[int, ...]:
@@ -297,6 +360,7 @@ register(
         accepts=lambda obj: isinstance(obj, dolfinx.mesh.Mesh | DolfinxMesh),
         read=_read,
         make=_make,
-        values=lambda obj: point_values(obj) if isinstance(obj, dolfinx.fem.Function) else None,
+        values=_values,
+        functions=lambda other, fields: to_functions(getattr(other, "domain", other), fields),
     )
 )

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import csv
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from ..base.option_names import MMG
 from ..loops.adapt_options import AdaptOptions
 from ..metric.base.aliases import PETSC_PREFIX, asks_nothing, our_name, our_value
-from ..metric.base.names import Tag
 from ..transfer import METHODS, OUTSIDE
 
 Number = TypeVar("Number", int, float)
@@ -30,25 +30,19 @@ def numbers(text: str) -> tuple[float, ...]:
     return _listed(text, float, "numbers")
 
 
-def tag(text: str) -> Tag:
-    """Parse a tag, or the name of tags."""
-    try:
-        return int(text)
-    except ValueError:
-        return text
+def _names(text: str) -> tuple[str, ...]:
+    """Parse names or tags between commas; a name with a comma stands in double quotes."""
+    (parts,) = csv.reader([text], skipinitialspace=True)
+    return tuple(part.strip() for part in parts if part.strip())
 
 
-def _tags(text: str) -> tuple[Tag, ...]:
-    return tuple(tag(part.strip()) for part in text.split(",") if part.strip())
-
-
-def _size_at(text: str) -> dict[Tag, float]:
+def _size_at(text: str) -> dict[str, float]:
     """Parse sizes by tags or names: ``wall=0.1,hole small=0.02``."""
-    sizes: dict[Tag, float] = {}
-    for part in text.split(","):
+    sizes: dict[str, float] = {}
+    for part in _names(text):
         name, _, size = part.rpartition("=")
         try:
-            sizes[tag(name.strip())] = float(size)
+            sizes[name.strip()] = float(size)
         except ValueError as error:
             raise argparse.ArgumentTypeError(
                 f"{text!r} is no list of sizes by name like wall=0.1,hole=0.02"
@@ -170,7 +164,7 @@ _REMESH: dict[str, tuple[Any, str]] = {
         "(default): only where the mesh cannot resolve the metric",
     ),
     "frozen_tags": (
-        _tags,
+        _names,
         "tags or names of facets that are kept as they are, comma-separated; also --frozen",
     ),
     "agreement": (

@@ -19,7 +19,7 @@ from ..meshes.plotted import Plotted, Subject
 from ..metric import from_fields
 from ..metric.base.given import AnyFields, given_fields
 from ..metric.base.told import Told
-from ..objects import AnyMesh, as_geometry, made, opened
+from ..objects import AnyMesh, made, opened
 from ..remeshing.demand import check_targets
 from ..remeshing.options import RemeshOptions
 from ..remeshing.project import Project
@@ -110,8 +110,10 @@ def adapt(
     options = AdaptOptions.chosen(options, settings)
     given = given_fields(held.fields, fields)
     if held.fields and given.names is not None and options.metric_fields is None:
-        options = replace(options, metric_fields=given.names)
-    shape = held.geometry if geometry is None else as_geometry(geometry)
+        named = as_fields(held.mesh, given.named()) if isinstance(fields, Mapping) else None
+        names = given.names if named is None else metric_field_names(named, None)
+        options = replace(options, metric_fields=names)
+    shape = held.outline(geometry)
     done = adapt_to(held.mesh, given.fields, options, geometry=shape, project=project)
     return done if like is None else done.to(like)
 

@@ -16,9 +16,9 @@ from ..transfer import TransferOptions
 STAGES = ("metric", "remesh", "transfer")
 
 
-def _transfer_to_a_remesh() -> TransferOptions:
-    # New points of a curved boundary lie on the smooth curve, so slightly off the old chords.
-    return TransferOptions(outside="nearest")
+#: Of an adaptation, where no other is asked for. New points of a curved boundary lie on the smooth
+#: curve, so slightly off the old chords.
+TO_A_REMESH = TransferOptions(outside="nearest")
 
 
 @by_name
@@ -52,7 +52,7 @@ class AdaptOptions:
 
     metric: MetricOptions = field(default_factory=MetricOptions)
     remesh: RemeshOptions = field(default_factory=RemeshOptions)
-    transfer: TransferOptions = field(default_factory=_transfer_to_a_remesh)
+    transfer: TransferOptions = TO_A_REMESH
     metric_fields: Sequence[str] | None = None
     max_refinement: float | None = None
 
@@ -120,5 +120,6 @@ class AdaptOptions:
     def with_settings(self, found: Mapping[str, Mapping[str, Any]]) -> AdaptOptions:
         """Return these options with others, by stage, in their place."""
         base = replace(self, **found["adapt"])
-        stages = {stage: replace(getattr(base, stage), **found[stage]) for stage in STAGES}
+        changed = (stage for stage in STAGES if found[stage])
+        stages = {stage: replace(getattr(base, stage), **found[stage]) for stage in changed}
         return replace(base, **stages, max_refinement=None)

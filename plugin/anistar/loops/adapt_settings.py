@@ -16,11 +16,16 @@ OWN = "loop"
 
 
 def with_adapt_settings(
-    kind: Callable[..., Options], options: Options | None, settings: Mapping[str, Any]
+    kind: Callable[..., Options],
+    options: Options | None,
+    settings: Mapping[str, Any],
+    *,
+    adapt: AdaptOptions,
 ) -> Options:
     """Return options of a class with an `adapt`, with settings in place of theirs.
 
-    A name that the loop and a stage of its adaptations share is the loop's.
+    A name that the loop and a stage of its adaptations share is the loop's. Without `options`
+    its adaptations have those of `adapt`.
 
     Raises
     ------
@@ -32,5 +37,5 @@ def with_adapt_settings(
     found = canonical(settings, known)
     given = {} if options is None else {name: getattr(options, name) for name in names}
     merged = {**given, **found.pop(OWN)}
-    adapt = merged.pop("adapt", AdaptOptions())
-    return kind(adapt=adapt.with_settings(found), **merged)
+    stages: AdaptOptions = merged.pop("adapt", adapt)
+    return kind(adapt=stages.with_settings(found), **merged)

@@ -20,7 +20,7 @@ from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..meshes.plotted import Plotted, Subject
 from ..metric.base.told import Told
-from ..objects import AnyMesh, as_geometry, made, opened, values_of
+from ..objects import AnyMesh, made_apart, opened, values_of
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
 from .adapt import adapt_to, metric_field_names, metric_for
@@ -142,7 +142,7 @@ class LoopError(MeshingError):
 
 def solving_on(solve: Solve, like: AnyMesh) -> Solve:
     """Return a solver of `Mesh` that lets another see the meshes in the form of `like`."""
-    return lambda mesh, fields: solve(made(mesh, {}, like), fields)
+    return lambda mesh, fields: solve(*made_apart(mesh, fields, like))
 
 
 class _State(NamedTuple):
@@ -213,7 +213,7 @@ def adapt_loop(
     check_targets(
         first, options.adapt.metric, options.sure_complexities(first.dim), options.adapt.remesh
     )
-    shape = (held.geometry or first) if geometry is None else as_geometry(geometry)
+    shape = held.outline(geometry)
     solve = solve if like is None else solving_on(solve, like)
     steps, wanted = list(finished), None
     try:

@@ -120,7 +120,7 @@ class LoopOptions:
         """
         if options is not None:
             require(LoopOptions, options=options)
-        return with_adapt_settings(cls, options, settings)
+        return with_adapt_settings(cls, options, settings, adapt=AdaptOptions())
 
     def complexity_after(self, iteration: int, dim: int, skipped: int = 0) -> float | None:
         """Return the target complexity after a solve, None when there is none left.

@@ -19,7 +19,7 @@ from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes
 from ..metric.base.told import Told
 from ..metric.kernels.elementary import log, power
-from ..objects import AnyMesh, as_geometry, opened
+from ..objects import AnyMesh, opened
 from ..remeshing.remesh import remesh
 from .adapt_options import AdaptOptions
 from .loop import Solve, Step, adapt_loop, solving_on
@@ -213,7 +213,7 @@ def convergence_study(
     )
     held = opened(mesh)
     first = held.mesh
-    shape = (held.geometry or first) if geometry is None else as_geometry(geometry)
+    shape = held.outline(geometry)
     solve = solve if like is None else solving_on(solve, like)
     others: dict[str, tuple[StudyRow, ...]] = {}
     with task("study", total=1 + len(baselines)) as line:

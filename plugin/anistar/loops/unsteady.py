@@ -20,9 +20,10 @@ from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..meshes.plotted import Plotted, Subject
 from ..metric import from_fields
+from ..metric.base.given import AnyFields, given_fields
 from ..metric.base.told import Told
 from ..metric.pipeline.scaling import Scale, scale_of
-from ..objects import AnyMesh, as_geometry, made, opened, values_of
+from ..objects import AnyMesh, made_apart, opened, values_of
 from ..remeshing.demand import check_targets
 from ..remeshing.project import Project
 from ..remeshing.remesh import remesh
@@ -36,7 +37,8 @@ Fields = dict[str, Any]
 Advance = Callable[[Mesh, Fields, float, float], Mapping[str, Field | ArrayLike]]
 """``advance(mesh, fields, begin, end)`` returns the fields at `end` from those at `begin`."""
 
-Initial = Mapping[str, Field | ArrayLike] | Callable[[Mesh], Mapping[str, Field | ArrayLike]]
+Start = Callable[[Mesh], Mapping[str, Field | ArrayLike]]
+Initial = AnyFields | Start
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -135,9 +137,10 @@ def unsteady_loop(
         for instants that are solved again, so it must depend on its arguments only.
     mesh : Mesh or other mesh object
         The first mesh. Its boundary is the geometry of every mesh.
-    fields : mapping of str to Field or array, or callable
-        The fields at the first time. ``fields(mesh)`` returns them on any mesh, so that what the
-        first mesh is too coarse for is not lost.
+    fields : mapping of str to Field or array, array, name, sequence of names, None, or callable
+        The fields at the first time; names are those of fields in the mesh object.
+        ``fields(mesh)`` returns them on any mesh, so that what the first mesh is too coarse for
+        is not lost.
     times : sequence of float
         Instants in ascending order, at least two.
     options : UnsteadyOptions, optional
@@ -179,12 +182,17 @@ def unsteady_loop(
     if options.adapt.metric.has_count:
         target = options.adapt.metric.complexity_for(first.dim)
         check_targets(first, options.adapt.metric, [target], options.adapt.remesh)
-    outline = (held.geometry or first) if geometry is None else as_geometry(geometry)
+    outline = held.outline(geometry)
     shape = _Shape(first, outline, project)
     advance = advance if like is None else advancing_on(advance, like)
-    now = Instant(instants[0], first, dict(fields(first) if callable(fields) else fields))
-    as_fields(first, now.fields)
-    carry = partial(_evaluated, fields) if callable(fields) else partial(_carried, options.adapt)
+    carry: Carry
+    if callable(fields):
+        initial = fields if like is None else starting_on(fields, like)
+        start, carry = _values(initial(first)), partial(_evaluated, initial)
+    else:
+        start, carry = given_fields(held.fields, fields).named(), partial(_carried, options.adapt)
+    as_fields(first, start)
+    now = Instant(instants[0], first, start)
     windows: list[Window] = []
     spans = list(_windows(instants, options.window))
     with task("unsteady loop", total=len(spans)) as line:
@@ -206,7 +214,12 @@ def unsteady_loop(
 
 def advancing_on(advance: Advance, like: AnyMesh) -> Advance:
     """Return a solver on `Mesh` that lets another see the meshes in the form of `like`."""
-    return lambda mesh, fields, begin, end: advance(made(mesh, {}, like), fields, begin, end)
+    return lambda mesh, fields, begin, end: advance(*made_apart(mesh, fields, like), begin, end)
+
+
+def starting_on(initial: Start, like: AnyMesh) -> Start:
+    """Return initial fields on `Mesh` of a function that is given meshes in the form of `like`."""
+    return lambda mesh: initial(made_apart(mesh, {}, like)[0])
 
 
 Carry = Callable[[Instant, Mesh], tuple[Fields, dict[str, Any] | None]]
@@ -269,18 +282,19 @@ def _carried(options: AdaptOptions, begin: Instant, mesh: Mesh) -> tuple[Fields,
     return carried.fields, carried.report.as_dict()
 
 
-def _evaluated(
-    initial: Callable[[Mesh], Mapping[str, Field | ArrayLike]], begin: Instant, mesh: Mesh
-) -> tuple[Fields, None]:
-    return dict(initial(mesh)), None
+def _evaluated(initial: Start, begin: Instant, mesh: Mesh) -> tuple[Fields, None]:
+    return _values(initial(mesh)), None
+
+
+def _values(returned: Mapping[str, Any]) -> Fields:
+    return {name: values_of(values) for name, values in returned.items()}
 
 
 def _advanced(advance: Advance, start: Instant, ends: list[float]) -> list[Instant]:
     history = [start]
     for end in ends:
         now = history[-1]
-        returned = advance(now.mesh, dict(now.fields), now.time, end)
-        found = {name: values_of(values) for name, values in returned.items()}
+        found = _values(advance(now.mesh, dict(now.fields), now.time, end))
         as_fields(now.mesh, found)
         history.append(Instant(end, now.mesh, found))
     return history

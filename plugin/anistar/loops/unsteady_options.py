@@ -9,13 +9,17 @@ from typing import Any
 from ..base.arguments import require
 from ..metric.base.by_name import by_name, require_numbers
 from ..transfer import TransferOptions
-from .adapt_options import AdaptOptions
+from .adapt_options import TO_A_REMESH, AdaptOptions
 from .adapt_settings import with_adapt_settings
 from .keeping import KeepOptions
 from .settling import check_max_coarsening
 
 # Hundreds of transfers add up: none may lose mass or make new extrema.
 _BOUNDED = TransferOptions(method="bounded", outside="nearest")
+
+
+def _bounded() -> AdaptOptions:
+    return AdaptOptions(transfer=_BOUNDED)
 
 
 @by_name
@@ -45,7 +49,7 @@ class UnsteadyOptions:
         If a number is out of range.
     """
 
-    adapt: AdaptOptions = field(default_factory=AdaptOptions)
+    adapt: AdaptOptions = field(default_factory=_bounded)
     window: int = 8
     passes: int = 1
     max_coarsening: float | None = 2.0
@@ -53,7 +57,7 @@ class UnsteadyOptions:
 
     def __post_init__(self) -> None:
         require(AdaptOptions, adapt=self.adapt)
-        if self.adapt.transfer == AdaptOptions().transfer:
+        if self.adapt.transfer is TO_A_REMESH:
             object.__setattr__(self, "adapt", replace(self.adapt, transfer=_BOUNDED))
         require_numbers(window=self.window, passes=self.passes)
         for name in ("window", "passes"):
@@ -78,4 +82,4 @@ class UnsteadyOptions:
         """
         if options is not None:
             require(UnsteadyOptions, options=options)
-        return with_adapt_settings(cls, options, settings)
+        return with_adapt_settings(cls, options, settings, adapt=_bounded())

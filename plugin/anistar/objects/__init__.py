@@ -2,7 +2,7 @@
 
 from ..metric.base.mesh import AnyMesh
 from .forms import Content, Form, as_geometry, as_mesh, form_names, opened, register, values_of
-from .making import made
+from .making import made, made_apart
 from .metrics import metric_in, metric_on
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "as_mesh",
     "form_names",
     "made",
+    "made_apart",
     "metric_in",
     "metric_on",
     "opened",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import logging
 import sys
 from collections.abc import Callable
 from functools import partial
@@ -11,6 +12,8 @@ from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
+
+_log = logging.getLogger(__name__)
 
 #: What has to be there when the package is, not first when an object of it is met.
 _ADAPTERS = {"pyvista": "anistar.adapters.vtk.accessor"}
@@ -31,31 +34,50 @@ def after_import(package: str, act: Callable[[], object]) -> None:
 
 
 class _Watch(MetaPathFinder):
-    """A finder that leaves the search to the others, and has their loader followed by a call."""
+    """A finder that leaves the search to the others, and has their loader followed by a call.
+
+    It stays until the package is imported: many look only whether it is there.
+    """
 
     def __init__(self, package: str, act: Callable[[], object]) -> None:
         self._package, self._act = package, act
+        self._is_searching = False
 
     def find_spec(self, fullname: str, path: Any, target: Any = None) -> ModuleSpec | None:
-        if fullname != self._package or self not in sys.meta_path:
+        if fullname != self._package or self._is_searching:
             return None
-        sys.meta_path.remove(self)
-        spec = importlib.util.find_spec(fullname)
+        self._is_searching = True
+        try:
+            spec = importlib.util.find_spec(fullname)
+        finally:
+            self._is_searching = False
         if spec is not None and spec.loader is not None:
-            spec.loader = _Followed(spec.loader, self._act)
+            spec.loader = _Followed(spec.loader, self._done)
         return spec
+
+    def _done(self) -> None:
+        if self in sys.meta_path:
+            sys.meta_path.remove(self)
+        try:
+            self._act()
+        except ImportError as error:  # the package is there all the same
+            _log.warning("%s has no accessor of anistar: %s", self._package, error)
 
 
 class _Followed(Loader):
-    """A loader with a call after it."""
+    """A loader with a call after it; in everything else it is the loader."""
 
     def __init__(self, loader: Loader, act: Callable[[], object]) -> None:
         self._loader, self._act = loader, act
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._loader, name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         return self._loader.create_module(spec)
 
     def exec_module(self, module: ModuleType) -> None:
+        module.__loader__ = self._loader
         if module.__spec__ is not None:
             module.__spec__.loader = self._loader
         self._loader.exec_module(module)

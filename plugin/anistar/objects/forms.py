@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,6 +42,10 @@ class Content(NamedTuple):
     fields: dict[str, Field]
     geometry: Mesh | None = None
 
+    def outline(self, geometry: AnyMesh | None) -> Mesh:
+        """Return the mesh whose facets are the geometry: that given, else that of the object."""
+        return (self.geometry or self.mesh) if geometry is None else as_geometry(geometry)
+
 
 @dataclass(frozen=True)
 class Form:
@@ -61,8 +65,11 @@ class Form:
     holds_fields : bool
         Whether its objects hold fields.
     values : callable or None
-        ``values(obj)`` returns what a function object of the package has at the points, None
-        for an object that is none.
+        ``values(obj)`` returns what a function object of the package has at the points, or a
+        `Field`; None for an object that is none.
+    functions : callable or None
+        ``functions(mesh, fields)`` returns fields as function objects on a mesh of this form,
+        where it has an order of points or cells of its own. None where arrays serve.
     """
 
     name: str
@@ -70,7 +77,8 @@ class Form:
     read: Callable[[Any], Content]
     make: Callable[[Mesh, Mapping[str, Any], Any], Any] | None = None
     holds_fields: bool = False
-    values: Callable[[object], Any | None] | None = field(default=None)
+    values: Callable[[object], Any | None] | None = None
+    functions: Callable[[Any, Mapping[str, Any]], dict[str, Any]] | None = None
 
 
 _FORMS: dict[str, Form] = {}

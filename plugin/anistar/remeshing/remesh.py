@@ -21,7 +21,7 @@ from ..meshes.mesh_arrays import mesh_arrays
 from ..meshes.plotted import Plotted, Subject
 from ..metric import check_metric
 from ..metric.base.told import Told
-from ..objects import AnyMesh, as_geometry, made, metric_in, opened
+from ..objects import AnyMesh, made, metric_in, opened
 from .contact import check_curves, check_surfaces
 from .demand import check_demand
 from .fidelity import smooth_shape, surface_deviations, tag_measures
@@ -123,7 +123,7 @@ def remesh(
     """
     held = opened(mesh)
     options = chosen(RemeshOptions, options, settings)
-    shape = (held.geometry or held.mesh) if geometry is None else as_geometry(geometry)
+    shape = held.outline(geometry)
     done = _remeshed(held.mesh, metric_in(held, M), options, shape, project)
     return done if like is None else done.to(like)
 

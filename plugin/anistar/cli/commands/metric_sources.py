@@ -17,9 +17,8 @@ from ...metric import (
     size_near_boundary,
     size_near_points,
 )
-from ...metric.base.names import Tag
 from ...metric.tensors.checks import REPAIRS
-from ..options import numbers, tag
+from ..options import numbers
 
 
 def add_source_arguments(parser: argparse.ArgumentParser) -> None:
@@ -50,13 +49,13 @@ def add_source_arguments(parser: argparse.ArgumentParser) -> None:
         "--size-at-tag",
         action="append",
         default=[],
-        type=_tag_and_size,
+        type=_name_and_size,
         metavar="TAG,H",
         help="size H at the facets with a tag or a name, growing from there",
     )
 
 
-def _tag_and_size(text: str) -> tuple[Tag, float]:
+def _name_and_size(text: str) -> tuple[str, float]:
     name, comma, size = text.rpartition(",")
     try:
         found = float(size)
@@ -64,7 +63,7 @@ def _tag_and_size(text: str) -> tuple[Tag, float]:
         raise argparse.ArgumentTypeError(f"{text!r} is no tag or name with a size") from error
     if not comma:
         raise argparse.ArgumentTypeError(f"{text!r} has no size: give TAG,H or NAME,H")
-    return tag(name.strip()), found
+    return name.strip(), found
 
 
 def has_sources(arguments: argparse.Namespace) -> bool:
