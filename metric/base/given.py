@@ -60,7 +60,10 @@ def given_fields(held: Mapping[str, Any], given: Any) -> Given:
         return Given({**held, **fields}, tuple(fields))
     names = _names(given)
     if names is None and given is not None:
-        return Given({**held, UNNAMED: values_of(given)}, (UNNAMED,))
+        name = UNNAMED
+        while name in held:  # which stays
+            name += "_"
+        return Given({**held, name: values_of(given)}, (name,))
     for name in names or ():
         if name not in held:
             known = ", ".join(map(repr, held)) or "none"

@@ -126,6 +126,8 @@ class MetricOptions:
         if self.size_at is not None and not isinstance(self.size_at, Mapping):
             raise TypeError(f"size_at must be like {{'wall': 0.02}}, got {self.size_at!r}")
         require_numbers(max_coarsening=self.max_coarsening, max_distortion=self.max_distortion)
+        for called, size in (self.size_at or {}).items():
+            require_numbers(**{f"size_at[{called!r}]": size})
         factor = self.gradation_factor
         if isinstance(factor, str) and factor != "auto":
             raise ValueError(f"gradation_factor must be a number, None or 'auto', got {factor!r}")

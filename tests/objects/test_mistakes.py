@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import square
+from meshes import cube, square
 
 import anistar
 from anistar import LoopOptions, Mesh, MetricOptions, RemeshOptions
@@ -108,3 +108,77 @@ def test_a_field_without_features_is_told(caplog):
     caplog.clear()
     anistar.adapt(square(8), np.tanh(9 * square(8).points[:, 0]), target_complexity=60)
     assert caplog.text == ""
+
+
+def test_sizes_stand_for_a_metric():
+    mesh = square()
+    done = anistar.remesh(mesh, 0.1)
+    assert anistar.validate(done.mesh) == []
+    assert np.allclose(done.metric, 100 * np.eye(2))
+    same = anistar.remesh(mesh, np.full(mesh.n_points, 0.1))
+    assert np.array_equal(same.mesh.points, done.mesh.points)
+    assert anistar.certify(done, 0.1).simplex_ok.all()
+    with pytest.raises(ValueError, match="7 sizes are given, the mesh has 25 points"):
+        anistar.remesh(mesh, np.ones(7))
+    with pytest.raises(ValueError, match="size at point 0 must be positive and finite"):
+        anistar.remesh(mesh, -0.1)
+
+
+def test_results_are_written_and_adapted_as_they_are(tmp_path):
+    mesh = square(8)
+    u = np.tanh(9 * mesh.points[:, 0])
+    done = anistar.adapt(mesh, u, target_complexity=60)
+    anistar.write(tmp_path / "done.vtu", done)
+    again, fields = anistar.read(tmp_path / "done.vtu")
+    assert anistar.validate(again) == []
+    assert np.array_equal(fields["u"].values, done.fields["u"])
+    further = anistar.adapt(done, "u", target_complexity=90)
+    assert anistar.validate(further.mesh) == []
+    anistar.write(tmp_path / "plain.vtu", mesh, u)
+    assert np.array_equal(anistar.read(tmp_path / "plain.vtu")[1]["u"].values, u)
+    with pytest.raises(TypeError, match="the path comes first, then the mesh: got Mesh"):
+        anistar.write(mesh, tmp_path / "x.vtu")
+
+
+def test_an_array_leaves_the_fields_of_an_object_as_they_are():
+    mesh = square(8)
+    held = anistar.objects.made(mesh, {"u": mesh.points[:, 0]}, "meshio")
+    done = anistar.adapt(held, np.tanh(9 * mesh.points[:, 1]), target_complexity=60)
+    assert done.report.metric_fields == ("u_",)
+    assert np.allclose(done.fields["u"].values, done.mesh.points[:, 0])
+
+
+def test_one_complexity_is_a_loop_of_one_adaptation():
+    def solve(mesh, fields):
+        return {"u": np.tanh(9 * mesh.points[:, 0])}
+
+    loop = anistar.adapt_loop(solve, square(8), complexities=60)
+    assert len(loop.steps) == 2
+
+
+def test_a_solver_in_time_that_loses_a_field_is_told():
+    def advance(mesh, fields, begin, end):
+        return {"v": fields["u"]}
+
+    with pytest.raises(anistar.MeshingError, match="returned the fields v, without u, which it"):
+        anistar.unsteady_loop(advance, square(), np.zeros(25), [0, 1], target_complexity=9)
+
+
+def test_a_budget_that_ends_the_work_is_told(caplog):
+    mesh = square(8)
+    M = anistar.metric.from_sizes(np.full(mesh.n_points, 0.02))
+    done = anistar.remesh(mesh, M, max_vertices=100)
+    assert anistar.validate(done.mesh) == []
+    assert "stopped by max_vertices: this is not the mesh that the metric asks for" in caplog.text
+    assert done.report.warnings[0].startswith("stopped by max_vertices")
+
+
+def test_a_surface_does_not_stand_for_a_volume():
+    pyvista = pytest.importorskip("pyvista")
+    with pytest.raises(TypeError, match="like is a vtkPolyData, which holds no tetrahedra"):
+        anistar.objects.made(cube(), {}, pyvista.Sphere())
+
+
+def test_sizes_that_are_no_numbers_are_named():
+    with pytest.raises(TypeError, match=r"size_at\['rubber'\] must be a number, got 'fine'"):
+        MetricOptions(size_at={"rubber": "fine"})

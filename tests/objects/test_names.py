@@ -90,6 +90,11 @@ def test_the_command_line_takes_names(tmp_path, monkeypatch):
     assert len(new.facets_of("hole small")) >= 18
     assert len(new.facets_of("left")) == len(new.facets_of("top")) == 4
     assert main(["metric", "in.vtu", "--size-at-tag", "hole small,0.05", "-o", "m.sol"]) == 0
+    twice = [*words, "--frozen", "left", "--frozen", "3", "--size-at", "right=0.3"]
+    assert main([*twice, "--size-at", "hole small=0.05"]) == 0
+    new, _ = anistar.read("out.vtu")
+    assert len(new.facets_of("left")) == len(new.facets_of("top")) == 4
+    assert len(new.facets_of("hole small")) >= 18
 
 
 def test_names_with_commas_and_digits_are_told_from_tags(tmp_path, monkeypatch):

@@ -97,8 +97,10 @@ def show_before_and_after(
 
 
 def _tag_row(tag: TagMeasure) -> list[Any]:
-    level = level_of("change", tag.change)
-    change = console.Marked(f"{100 * tag.change:+.2g} %" if level else "", level)
+    told = f"{100 * tag.change:+.2g} %" if level_of("change", tag.change) else ""
+    if tag.smooth != tag.before and told:
+        told += f" ({100 * tag.change_from_smooth:+.2g} % of the smooth shape)"
+    change = console.Marked(told, level_of("change", tag.change_from_smooth))
     return [tag.name or str(tag.tag), _MEASURES[tag.dim], tag.before, tag.after, change]
 
 

@@ -36,18 +36,18 @@ def _names(text: str) -> tuple[str, ...]:
     return tuple(part.strip() for part in parts if part.strip())
 
 
-def _size_at(text: str) -> dict[str, float]:
+def _size_at(text: str) -> tuple[tuple[str, float], ...]:
     """Parse sizes by tags or names: ``wall=0.1,hole small=0.02``."""
-    sizes: dict[str, float] = {}
+    sizes: list[tuple[str, float]] = []
     for part in _names(text):
         name, _, size = part.rpartition("=")
         try:
-            sizes[name.strip()] = float(size)
+            sizes.append((name.strip(), float(size)))
         except ValueError as error:
             raise argparse.ArgumentTypeError(
                 f"{text!r} is no list of sizes by name like wall=0.1,hole=0.02"
             ) from error
-    return sizes
+    return tuple(sizes)
 
 
 def _listed(text: str, kind: Callable[[str], Number], what: str) -> tuple[Number, ...]:
@@ -181,6 +181,9 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "threads": (int, "that work side by side; the result does not depend on it"),
 }
 
+_REPEATED = ("frozen_tags", "size_at")
+"""Flags that add to each other."""
+
 _OPTIONAL_VALUE = {
     "until_consistent": ("pure",),
     "restrict_anisotropy_first": tuple(_SWITCH),
@@ -223,6 +226,8 @@ def adapt_options(arguments: argparse.Namespace, **extra: Any) -> AdaptOptions:
     """Return the options that were given as flags."""
     given = vars(arguments)
     options = {name: given[name] for name in (*_METRIC, *_REMESH) if name in given}
+    if "size_at" in options:
+        options["size_at"] = dict(options["size_at"])
     carried = {"method": given.get("transfer_method"), "outside": given.get("outside")}
     transfer = {name: value for name, value in carried.items() if value is not None}
     return AdaptOptions.from_dict({**options, "transfer": transfer, **extra})
@@ -275,6 +280,8 @@ def _add(group: argparse._ArgumentGroup, table: dict[str, tuple[Any, str]]) -> N
         optional: dict[str, Any] = {}
         if name in _OPTIONAL_VALUE:
             optional = {"nargs": "?", "const": True}
+        if name in _REPEATED:
+            optional = {"action": "extend"}
         group.add_argument(
             f"--{name.replace('_', '-')}",
             dest=name,

@@ -16,6 +16,7 @@ from ..base.atomic import replaced
 from ..base.errors import FormatError
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
+from ..metric.base.given import AnyFields, given_fields
 from ..objects import AnyMesh, Content, Form, made, opened, register
 from . import inp_reader, med_reader, meshio_writer, su2_reader, su2_writer
 from .carried import holdable, losses
@@ -155,9 +156,7 @@ def _require_readable(path: Path) -> None:
         )
 
 
-def write(
-    path: PathLike, mesh: AnyMesh, fields: Mapping[str, Field | ArrayLike] | None = None
-) -> None:
+def write(path: PathLike, mesh: AnyMesh, fields: AnyFields = None) -> None:
     """Write a mesh and its fields under a temporary name, then move them into place.
 
     Parameters
@@ -165,9 +164,10 @@ def write(
     path : path
         The suffix chooses the format, see `read`.
     mesh : Mesh or other mesh object
-    fields : mapping of str to Field or array, optional
-        A bare array lives on the points. Those that the object holds are written too. The medit
-        formats put fields into a `.sol` or `.solb` of the same name.
+    fields : mapping of str to Field or array, array, name, sequence of names, or None
+        A bare array lives on the points, and is called ``u`` if it has no name. Names are those
+        of fields in the object, all of which are written beside those given. The medit formats
+        put fields into a `.sol` or `.solb` of the same name.
 
     Raises
     ------
@@ -180,8 +180,11 @@ def write(
     -----
     What else the format does not carry is a logged warning; `losses` tells it beforehand.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise TypeError(f"the path comes first, then the mesh: got {type(path).__name__}")
     held = opened(mesh)
-    checked = as_fields(held.mesh, {**held.fields, **(fields or {})})
+    given = held.fields if fields is None else given_fields(held.fields, fields).fields
+    checked = as_fields(held.mesh, given)
     put(path, held.mesh, checked)
     if suffix_of(Path(path)) not in SOLUTIONS:
         for text in losses(held.mesh, checked, path):

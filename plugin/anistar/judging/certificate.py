@@ -265,7 +265,7 @@ def certify(
     ----------
     mesh : Mesh or other mesh object
         Its facets are the walls of the constrained definition.
-    M : (n, d, d) array, or name of a field of the object
+    M : (n, d, d) array, (n,) sizes, one size, or name of a field of the object
         Metric at the points, in 1 / length**2.
     threads : int
         Threads to use; the certificate does not depend on it.

@@ -102,7 +102,7 @@ def explain_star(mesh: AnyMesh, M: ArrayLike | str, vertex: int) -> tuple[Simple
     Parameters
     ----------
     mesh : Mesh or other mesh object
-    M : (n, d, d) array, or name of a field of the object
+    M : (n, d, d) array, (n,) sizes, one size, or name of a field of the object
         Metric at the points, in 1 / length**2.
     vertex : int
         The point whose star is explained.
@@ -140,7 +140,7 @@ def explain_surface_star(
     Parameters
     ----------
     mesh : Mesh or other mesh object
-    M : (n, d, d) array, or name of a field of the object
+    M : (n, d, d) array, (n,) sizes, one size, or name of a field of the object
         Metric at the points, in 1 / length**2.
     vertex : int
         The point whose surface star is explained.

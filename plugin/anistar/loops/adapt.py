@@ -249,4 +249,5 @@ def _about_labels(fields: Iterable[Field]) -> str:
 
 
 def _listed(fields: Mapping[str, Field]) -> str:
-    return ", ".join(f"{name} ({field.kind}, {field.on})" for name, field in fields.items()) or "-"
+    told = (f"{name} ({field.kind}, {field.on})" for name, field in fields.items())
+    return ", ".join(told) or "none"

@@ -74,7 +74,7 @@ def needs_adaptation(mesh: AnyMesh, M: ArrayLike | str, keep: KeepOptions | None
     Parameters
     ----------
     mesh : Mesh or other mesh object
-    M : (n, d, d) array, or name of a field of the object
+    M : (n, d, d) array, (n,) sizes, one size, or name of a field of the object
         Metric at its points.
     keep : KeepOptions, optional
         How far that may be.

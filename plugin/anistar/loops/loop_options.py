@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from ..base.arguments import require
 from ..meshes.mesh import Mesh
 from ..metric.base.by_name import by_name, require_numbers
@@ -36,7 +38,7 @@ class LoopOptions:
     ----------
     adapt : AdaptOptions
         Options of each adaptation; the target complexity is replaced in each.
-    complexities : sequence of float, optional
+    complexities : sequence of float, or float, optional
         Target complexity of each adaptation; repeat one to iterate at a fixed complexity.
     target_error : float, optional
         Stop when the estimated L2 norm of the P1 interpolation error of every metric field is
@@ -83,7 +85,7 @@ class LoopOptions:
             require(KeepOptions, keep=self.keep)
         check_max_coarsening(self.max_coarsening, self.adapt)
         if self.complexities is not None:
-            values = tuple(float(value) for value in self.complexities)
+            values = tuple(float(value) for value in np.atleast_1d(self.complexities))
             for index, value in enumerate(values):
                 if not (value > 0 and math.isfinite(value)):
                     raise ValueError(f"complexities[{index}] must be above 0, not {value}")

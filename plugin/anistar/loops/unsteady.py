@@ -295,6 +295,12 @@ def _advanced(advance: Advance, start: Instant, ends: list[float]) -> list[Insta
     for end in ends:
         now = history[-1]
         found = _values(advance(now.mesh, dict(now.fields), now.time, end))
+        missing = sorted(start.fields.keys() - found.keys())
+        if missing:
+            raise ValueError(
+                f"advance returned the fields {', '.join(found) or 'none'}, without "
+                f"{', '.join(missing)}, which it was given"
+            )
         as_fields(now.mesh, found)
         history.append(Instant(end, now.mesh, found))
     return history

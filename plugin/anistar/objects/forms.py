@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..meshes.fields import Field
+from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..metric.base.mesh import AnyMesh, Background, set_reader
 
@@ -129,7 +129,7 @@ def opened(obj: AnyMesh, name: str = "mesh") -> Content:
 
     Parameters
     ----------
-    obj : Mesh, path, or mesh of another package
+    obj : Mesh, result of a function here, path, or mesh of another package
     name : str
         What the argument is called in messages.
 
@@ -140,6 +140,9 @@ def opened(obj: AnyMesh, name: str = "mesh") -> Content:
     """
     if isinstance(obj, Mesh):
         return Content(obj, {})
+    mesh = getattr(obj, "mesh", None)
+    if isinstance(mesh, Mesh):  # what functions here return
+        return Content(mesh, as_fields(mesh, getattr(obj, "fields", None)))
     form = form_of(obj)
     if form is None:
         raise TypeError(

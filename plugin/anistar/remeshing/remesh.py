@@ -81,7 +81,7 @@ def remesh(
     ----------
     mesh : Mesh or other mesh object
         Carries the metric: P1 interpolation of its logarithm.
-    M : (n, d, d) array, or name of a field of the object
+    M : (n, d, d) array, (n,) sizes, one size, or name of a field of the object
         Metric at the points of `mesh`, in 1 / length**2. It is taken as given: no bounds,
         no gradation, no scaling. Only where the mesh is too coarse to say what the metric is
         between its points, the refinement is limited, see `RemeshOptions`.

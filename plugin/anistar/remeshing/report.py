@@ -204,9 +204,22 @@ def report_of(
         distortion=made.distortion,
         tags=tags,
         deviations=deviations,
-        warnings=shape_warnings(tags, deviations),
+        warnings=(
+            *_budget_warnings(stop_reason, statistics["edge_max"]),
+            *shape_warnings(tags, deviations),
+        ),
         counts={name: float(count) for name, count in made.counts.items()},
         seconds=made.seconds,
+    )
+
+
+def _budget_warnings(stop_reason: str, longest: float) -> tuple[str, ...]:
+    """Return that a budget ended the work before the mesh was what the metric asks for."""
+    if stop_reason not in (StopReason.max_vertices.name, StopReason.max_seconds.name):
+        return ()
+    return (
+        f"stopped by {stop_reason}: this is not the mesh that the metric asks for, its longest "
+        f"edge has the length {longest:.3g} there",
     )
 
 

@@ -290,8 +290,8 @@ def _mesher(mesher: Mapping[str, Any]) -> str:
 
 def _tag_row(tag: Mapping[str, Any]) -> list[Any]:
     given = [tag[key] for key in ("dim", "before", "after")]
-    changes = [_judged("change", tag[key]) for key in ("change", "change_from_smooth")]
-    return [tag["name"] or str(tag["tag"]), *given, *changes]
+    judged = _judged("change", tag["change_from_smooth"])
+    return [tag["name"] or str(tag["tag"]), *given, tag["change"], judged]
 
 
 def _transfer(carried: Mapping[str, Any]) -> str:
