@@ -1,5 +1,7 @@
 """Series in time: one instant is read, the last one by default, and all are converted."""
 
+import shutil
+
 import meshio
 import numpy as np
 import pytest
@@ -74,6 +76,42 @@ def test_a_whole_series_is_converted_with_its_times(series):
     assert main(["convert", f"{series}:1", "one.pvd"]) == 0
     assert formats.instants("one.pvd") == (0.0,)
     assert lowest(anistar.read("one.pvd")) == 1
+
+
+def test_a_shorter_series_removes_what_the_list_there_has_and_nothing_else(
+    tmp_path, monkeypatch, caplog
+):
+    monkeypatch.chdir(tmp_path)
+    write_pvd("run.pvd")
+    for name in ("run_012.vtu", "run_005.vtu"):
+        formats.write(name, square(1))
+    assert main(["convert", "run_005.vtu", "run.pvd"]) == 0
+    told = "removed what the earlier series had beyond this one: run_001.vtu, run_002.vtu"
+    assert told in caplog.text
+    left = sorted(path.name for path in tmp_path.iterdir())
+    assert left == ["run.pvd", "run_000.vtu", "run_005.vtu", "run_012.vtu"]
+
+
+@pytest.mark.parametrize("given", ["run.pvd", "run.pvd:1", "run_001.vtu", "other.pvd"])
+@pytest.mark.parametrize("dry", [True, False])
+def test_a_series_is_never_written_over_what_is_read(tmp_path, monkeypatch, capsys, given, dry):
+    monkeypatch.chdir(tmp_path)
+    write_pvd("run.pvd")
+    shutil.copy("run.pvd", "other.pvd")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert main(["convert", given, "run.pvd", *(["--dry-run"] if dry else [])]) == 2
+    assert "which is read, is a part of it" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_series_replaces_no_file_of_another(series):
+    formats.write("all_000.vtu", square(5))
+    for path in (series, f"{series}:0"):
+        for more in ([], ["--dry-run"]):
+            assert main(["convert", path, "all.pvd", *more]) == 2
+    with pytest.raises(FormatError, match=r"all_000\.vtu is there and no part of this series"):
+        formats.write("all.pvd", square(1))
+    assert formats.read("all_000.vtu")[0].n_cells == 50
 
 
 def test_files_without_instants_have_none_to_choose(tmp_path):

@@ -8,7 +8,9 @@ from pathlib import Path
 
 from ..base.errors import FormatError
 from ..formats import is_known
+from ..formats.content.series import numbered
 from ..formats.suffixes import SOLUTION_OF, SOLUTIONS, solution_beside, suffix_of
+from ..formats.vtk import pvd
 
 
 def writable(path: str, *, is_mesh: bool = True) -> Path:
@@ -91,14 +93,44 @@ def replaced_inputs(inputs: Iterable[str | None], output: Path, *others: Path | 
         A mesh or a solution.
     *others : Path or None
         Further outputs, which stand for themselves.
+
+    Raises
+    ------
+    FormatError
+        If the output is a series that an input is, or is a part of.
     """
+    given = [numbered(Path(path))[0] for path in inputs if path]
+    if suffix_of(output) == ".pvd":
+        require_apart(given, output, 1)
     beside = SOLUTION_OF.get(suffix_of(output))
     written = [output, *filter(None, others)]
     written += [output.with_suffix(beside)] if beside else []
-    given = [Path(path) for path in inputs if path]
-    read = [*given, *filter(None, map(solution_beside, given))]
+    read = [*given, *filter(None, map(solution_beside, given)), *_members(given)]
     found = [path for path in read if any(_is_same(path, target) for target in written)]
     return list(dict.fromkeys(map(str, found)))
+
+
+def require_apart(inputs: Iterable[Path], output: Path, count: int) -> None:
+    """Raise if a series of so many meshes goes where an input is.
+
+    Raises
+    ------
+    FormatError
+        Names the input, and what of the series is there.
+    """
+    files = [output, *pvd.listed(output), *(pvd.member(output, k) for k in range(count))]
+    for path in inputs:
+        for read in (path, *_members([path])):
+            if any(_is_same(read, file) for file in files):
+                raise FormatError(
+                    f"cannot write the series {output}: {read}, which is read, is a part of it; "
+                    "choose another name"
+                )
+
+
+def _members(paths: Iterable[Path]) -> list[Path]:
+    """Return the files that the series among some paths list."""
+    return [file for path in paths if suffix_of(path) == ".pvd" for file in pvd.listed(path)]
 
 
 def _is_same(one: Path, other: Path) -> bool:

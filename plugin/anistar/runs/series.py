@@ -25,7 +25,7 @@ def write_series(path: str | os.PathLike[str], items: Iterable[Item]) -> list[Pa
     """Write meshes and fields as ``name_000.vtu``, ``name_001.vtu``, ... and ``name.pvd``.
 
     ParaView opens the PVD file as a time series whose time is the number of the item. Files
-    ``name_*.vtu`` with higher numbers, left by a longer series, are removed.
+    that the PVD file there lists beyond them, of a longer series, are removed and logged.
 
     Parameters
     ----------

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import os
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from ...formats import holdable, instants, losses, put, read, read_with_report
 from ...formats.suffixes import suffix_of
+from ...formats.vtk.pvd import require_own
 from ...runs.series import SeriesWriter
 from .. import console
-from ..files import replaced_inputs, writable
+from ..files import replaced_inputs, require_apart, writable
 
 SUMMARY = "write a mesh and its fields in another format"
 EXAMPLE = "anistar convert in.msh out.vtu"
@@ -33,14 +33,16 @@ def run(arguments: argparse.Namespace) -> int:
     times = instants(arguments.input)
     if suffix_of(output) == ".pvd" and len(times) > 1 and Path(arguments.input).is_file():
         return _convert_series(arguments, output, times)
+    replaced = replaced_inputs([arguments.input], output)
     mesh, fields, report = read_with_report(arguments.input)
     lost = losses(mesh, fields, output)
     kept = holdable(mesh, fields, output)
+    if suffix_of(output) == ".pvd":
+        require_own(output, 1)
     if arguments.dry_run:
         with tempfile.TemporaryDirectory() as folder:
             put(Path(folder) / output.name, mesh, kept)  # what cannot be written is an error
     else:
-        replaced = replaced_inputs([arguments.input], output)
         put(output, mesh, kept)
         console.say_replaced(replaced, "what was read from it", beside_json=arguments.json)
     if arguments.json:
@@ -54,8 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _convert_series(arguments: argparse.Namespace, output: Path, times: Sequence[float]) -> int:
     """Write every instant of a series; VTU has a place for everything in them."""
-    if os.path.realpath(output) == os.path.realpath(arguments.input):
-        raise ValueError(f"cannot write the series {output} over itself")
+    require_apart([Path(arguments.input)], output, len(times))
+    require_own(output, len(times))
     if not arguments.dry_run:
         writer = SeriesWriter(output)
         for number, time in enumerate(times):
