@@ -10,7 +10,7 @@ import pyvista
 from meshes import cube, square, two_region_cube, two_regions
 
 import anistar
-from anistar import objects
+from anistar import Mesh, objects
 
 HOLDING_FIELDS = ["meshio", "pyvista", "vtk"]
 BARE = ["dolfinx", "mfem", "ngsolve", "skfem"]
@@ -232,6 +232,19 @@ def test_every_stage_takes_an_object_and_the_name_of_a_metric():
     assert anistar.metric.complexity(grid, M) == anistar.metric.complexity(mesh, M)
     sizes = anistar.metric.size_near_boundary(grid, 1, 0.1)
     assert np.array_equal(sizes, anistar.metric.size_near_boundary(mesh, 1, 0.1))
+
+
+@pytest.mark.parametrize("given", [cube(2), Mesh(**square(2).arrays() | {"z": 0.5})])
+@pytest.mark.parametrize("form", ["meshio", "pyvista"])
+def test_a_flat_example_takes_nothing_from_what_needs_more_room(given, form):
+    flat = meshio.Mesh(square(1).points, [("triangle", square(1).cells)])
+    surface = objects.made(square(1), {}, "pyvista").extract_surface(algorithm="geometry")
+    made = objects.made(given, {}, flat if form == "meshio" else surface)
+    again = objects.as_mesh(made)
+    assert (again.dim, again.z) == (given.dim, given.z)
+    assert np.array_equal(again.points, given.points)
+    assert again.n_cells == given.n_cells
+    assert anistar.validate(again) == []
 
 
 def test_cell_sets_of_meshio_become_tags_with_names():

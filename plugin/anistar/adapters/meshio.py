@@ -50,8 +50,8 @@ def to_meshio(
         Vectors get three components, tensors nine, row by row. Cell fields are NaN (labels 0)
         on the blocks of lower dimension.
     like : meshio.Mesh, optional
-        One whose habits are kept: the number of coordinates, the name of the data that holds the
-        tags, and whether there are cells of lower dimension.
+        One whose habits are kept: the number of coordinates unless the mesh needs more, the name
+        of the data that holds the tags, and whether there are cells of lower dimension.
 
     Returns
     -------
@@ -61,9 +61,10 @@ def to_meshio(
     raw = exported(mesh, as_fields(mesh, fields))
     blocks, points, key = raw.blocks, raw.points, TAGS
     if like is not None:
-        dims = {KIND_DIM.get(_kind(block)) for block in like.cells}
+        dims = {KIND_DIM.get(_kind(block)) for block in like.cells} | {mesh.dim}
         blocks = [block for block in blocks if KIND_DIM[block.kind] in dims]
-        points = points[:, : np.shape(like.points)[1]]
+        needed = 3 if mesh.z else mesh.dim
+        points = points[:, : max(needed, np.shape(like.points)[1])]
         key = next((name for name in (TAGS, *FOREIGN_TAGS) if name in like.cell_data), TAGS)
     data = {name: [block.data[name] for block in blocks] for name in blocks[0].data}
     data[key] = [np.asarray(block.tags, np.int32) for block in blocks]

@@ -30,11 +30,14 @@ def _read(data: Any) -> Content:
 
 
 def _make(mesh: Mesh, fields: Mapping[str, Any], like: Any) -> Any:
-    """Return a grid; where `like` has no cells of lower dimension, one without such."""
+    """Return a grid; where `like` has no cells of lower dimension, one without such.
+
+    Tetrahedra have no place in a `vtkPolyData`: a mesh in 3D is a grid in any case.
+    """
     if like is None:
         return to_vtk(mesh, fields)
     grid = to_vtk(mesh, fields, dims=_dims(like) | {mesh.dim})
-    if not like.IsA("vtkPolyData"):
+    if mesh.dim == 3 or not like.IsA("vtkPolyData"):
         return grid
     if mesh.dim == 3:
         raise TypeError("like is a vtkPolyData, which holds no tetrahedra: give like='pyvista'")
