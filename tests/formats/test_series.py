@@ -1,5 +1,6 @@
 """Series in time: one instant is read, the last one by default, and all are converted."""
 
+import re
 import shutil
 
 import meshio
@@ -156,6 +157,43 @@ def test_a_series_in_xdmf_that_is_damaged_is_refused(tmp_path, old, new, message
     path.write_text(text.replace(old, new))
     with pytest.raises(FormatError, match=message):
         formats.read(path)
+
+
+def with_common_times(path, element):
+    """Write a series whose collection has the times instead of its grids."""
+    write_xdmf(path, "XML")
+    text, head = re.sub(r"<Time Value=[^>]*/>", "", path.read_text()), 'CollectionType="Temporal">'
+    assert text.count(head) == 1
+    path.write_text(text.replace(head, f"{head}<Time {element}</Time>"))
+
+
+@pytest.mark.parametrize(
+    ("element", "times"),
+    [
+        ('TimeType="List"><DataItem Dimensions="3">0.5 1.5 4</DataItem>', (0.5, 1.5, 4)),
+        ('TimeType="HyperSlab"><DataItem Dimensions="3">1 .25 3</DataItem>', (1, 1.25, 1.5)),
+    ],
+)
+def test_a_collection_may_have_the_times_of_its_grids(tmp_path, element, times):
+    with_common_times(tmp_path / "run.xdmf", element)
+    assert formats.instants(tmp_path / "run.xdmf") == times
+    assert lowest(formats.read(tmp_path / "run.xdmf", instant=1)) == 1
+
+
+@pytest.mark.parametrize(
+    ("element", "message"),
+    [
+        ('TimeType="Range"><DataItem Dimensions="2">0 1</DataItem>', "times of type 'Range'"),
+        ('Value="3">', "times of type 'Single'"),
+        ('TimeType="List"><DataItem Dimensions="2">0 1</DataItem>', "2 times for 3 grids"),
+        ('TimeType="HyperSlab"><DataItem Dimensions="2">0 1</DataItem>', "of 2 numbers, not 3"),
+        ('TimeType="HyperSlab"><DataItem Dimensions="3">0 1 9e9</DataItem>', "4 times for 3"),
+    ],
+)
+def test_times_that_do_not_fit_the_grids_are_refused(tmp_path, element, message):
+    with_common_times(tmp_path / "run.xdmf", element)
+    with pytest.raises(FormatError, match=message):
+        formats.instants(tmp_path / "run.xdmf")
 
 
 def test_numbers_in_hdf5_are_read_beside_the_document_only(tmp_path):

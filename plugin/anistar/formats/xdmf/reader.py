@@ -13,11 +13,13 @@ from functools import partial
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
+import numpy as np
+
 from ..content.raw import RawMesh
 from ..content.series import Series
 from ..content.tag_arrays import take_tags
 from ..parsing.reading import reading
-from ..parsing.xml_tree import attribute, root_of
+from ..parsing.xml_tree import attribute, only_child, root_of
 from .grid import content_of
 from .items import Items
 
@@ -47,7 +49,7 @@ def series(path: Path) -> Series:
         if root.tag != "Xdmf":
             raise ValueError(f"it begins with {root.tag[:40]!r}, it is no XDMF")
         top = root.findall("Domain/Grid")
-        instants = _instants(top)
+        instants = _instants(top, Items(path.parent))
     times = tuple(instant.time for instant in instants)
     return Series(times, partial(_content, path, top, instants))
 
@@ -63,14 +65,14 @@ def _content(path: Path, top: list[Element], instants: list[_Instant], number: i
     return raw
 
 
-def _instants(top: list[Element]) -> list[_Instant]:
+def _instants(top: list[Element], items: Items) -> list[_Instant]:
     """Return the grids of each time: those of all collections that have the time."""
     collections = [grid for grid in top if grid.get("GridType", "Uniform") == "Collection"]
     if not collections:
         if len(top) != 1:
             raise ValueError(f"it has {len(top)} grids: one mesh or one series is read")
         _check_uniform(top[0])
-        return [_Instant(_time_of(top[0], 0), top)]
+        return [_Instant(_time_of(top[0], 0.0), top)]
     lists = []
     for collection in collections:
         if collection.get("CollectionType", "Spatial") != "Temporal":
@@ -80,11 +82,12 @@ def _instants(top: list[Element]) -> list[_Instant]:
         grids = collection.findall("Grid")
         for grid in grids:
             _check_uniform(grid)
-        lists.append([(_time_of(grid, k), grid) for k, grid in enumerate(grids)])
-    times = [time for time, _ in lists[0]]
-    if any([time for time, _ in other] != times for other in lists[1:]):
+        times = _times_in(collection, len(grids), items)
+        lists.append([(_time_of(grid, times[k]), grid) for k, grid in enumerate(grids)])
+    first = [time for time, _ in lists[0]]
+    if any([time for time, _ in other] != first for other in lists[1:]):
         raise ValueError("its collections have not the same times")
-    return [_Instant(time, [members[k][1] for members in lists]) for k, time in enumerate(times)]
+    return [_Instant(time, [members[k][1] for members in lists]) for k, time in enumerate(first)]
 
 
 def _check_uniform(grid: Element) -> None:
@@ -96,9 +99,35 @@ def _check_uniform(grid: Element) -> None:
             raise ValueError(f"the element {child.tag} in Grid is not known")
 
 
-def _time_of(grid: Element, number: int) -> float:
+def _times_in(collection: Element, count: int, items: Items) -> list[float]:
+    """Return the times that a collection gives its grids, their numbers where it gives none."""
+    element = collection.find("Time")
+    if element is None:
+        return [float(number) for number in range(count)]
+    kind = element.get("TimeType", element.get("Type", "Single"))
+    if kind not in ("List", "HyperSlab"):
+        raise ValueError(
+            f"its collection has times of type {kind[:40]!r}: List and HyperSlab are read, or a "
+            "Time in every grid"
+        )
+    values = items.numbers(only_child(element, "DataItem")).ravel()
+    if kind == "HyperSlab":
+        if len(values) != 3:
+            raise ValueError(f"its times are a HyperSlab of {len(values)} numbers, not 3")
+        start, step, n = values.tolist()
+        values = start + step * np.arange(min(n, count + 1))
+    if len(values) != count:
+        raise ValueError(f"its collection has {len(values)} times for {count} grids")
+    return [float(time) for time in values]
+
+
+def _time_of(grid: Element, otherwise: float) -> float:
     element = grid.find("Time")
-    return float(number) if element is None else float(attribute(element, "Value"))
+    if element is None:
+        return otherwise
+    if (kind := element.get("TimeType", element.get("Type", "Single"))) != "Single":
+        raise ValueError(f"a grid has a time of type {kind[:40]!r}: one number is read")
+    return float(attribute(element, "Value"))
 
 
 def _mesh_of(grid: Element, top: list[Element]) -> list[Element]:
