@@ -222,6 +222,34 @@ def test_a_tilted_plane_is_refused_with_its_normal(tmp_path, plane, message):
         formats.read(path)
 
 
+@pytest.mark.parametrize(("number", "most"), [(np.float32, 1e-6), (np.float64, 1e-10)])
+@pytest.mark.parametrize("z", [0.0, 3.5])
+def test_a_plane_that_was_turned_away_and_back_is_one_again(tmp_path, number, most, z):
+    mesh = square(3)
+    turn = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0].astype(number)
+    given = np.column_stack([mesh.points - 0.5, np.full(mesh.n_points, z)]).astype(number)
+    points = (given @ turn.T) @ turn
+    assert np.ptp(points[:, 2]) > 0
+    path = written(tmp_path / "m.vtu", points, [("triangle", mesh.cells)])
+    got, _, report = formats.read_with_report(path)
+    assert (got.dim, got.z == 0) == (2, z == 0)
+    assert abs(got.z - z) <= most * 4
+    assert "z varies by" in report.warnings[0]
+    assert validate(got) == []
+
+
+def test_a_spread_beyond_rounding_is_told_with_its_bound(tmp_path):
+    mesh = square(3)
+    z = np.full(mesh.n_points, 0.1)
+    z[0] += 1e-9
+    path = written(tmp_path / "m.vtu", np.c_[mesh.points, z], [("triangle", mesh.cells)])
+    with pytest.raises(
+        formats.FormatError,
+        match=r"not quite a plane of one z: z varies by 1e-09, more than .*1e-10",
+    ):
+        formats.read(path)
+
+
 def test_a_curved_surface_is_refused(tmp_path):
     mesh = square(2)
     points = np.column_stack([mesh.points, (mesh.points**2).sum(axis=1)])

@@ -72,7 +72,7 @@ def simplices_of(raw: RawMesh) -> Simplices:
         _check_indices(block, len(raw.points))
     straight, notes = corners_of(given)
     nodes = [b.rows.ravel() for b in straight if KINDS[b.kind].dim == dim]
-    points, z = in_dimension(raw, dim, np.concatenate(nodes))
+    points, z, plane_notes = in_dimension(raw, dim, np.concatenate(nodes))
     blocks, n_split, split_notes = split(straight, points)
     ridges, corners = borders_in(points, blocks)
     merged = {d: _merged([*blocks, *ridges], d) for d in range(dim + 1)}
@@ -91,6 +91,7 @@ def simplices_of(raw: RawMesh) -> Simplices:
         mids=MidNodes.of(given),
         n_split=n_split,
         notes=[
+            *plane_notes,
             *split_notes,
             *notes,
             *not_read(sorted(partial), what="field", why="not on all cells"),
