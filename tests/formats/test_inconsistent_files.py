@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from meshes import square
 
-from anistar import formats
+from anistar import Mesh, formats
 from anistar.base.errors import FormatError
 from anistar.runs.file_solver import FileSolver
 
@@ -70,6 +70,18 @@ def test_a_solver_that_returns_another_mesh_is_told_so(tmp_path, monkeypatch):
     solver = FileSolver(command, tmp_path, kind="vtu")
     with pytest.raises(FormatError, match="has 16 points and 18 cells in 2D, the mesh has 9 and 8"):
         solver(square(2), {})
+
+
+def test_what_a_solver_is_not_told_of_the_mesh_is_said_once(tmp_path, monkeypatch, caplog):
+    mesh = Mesh(**square(2).arrays() | {"z": 0.5})
+    formats.write(tmp_path / "solved.vtu", mesh, {"u": np.zeros(9)})
+    (tmp_path / "solve.py").write_text("import shutil, sys; shutil.copy('solved.vtu', sys.argv[2])")
+    monkeypatch.chdir(tmp_path)
+    solver = FileSolver(f"{sys.executable} solve.py {{mesh}} {{solution}}", ".", kind="su2")
+    for _ in range(2):
+        assert solver(mesh, {})["u"].values.shape == (9,)
+    told = [text for text in caplog.messages if "height" in text]
+    assert told == ["step_000.su2: this format does not carry the height z = 0.5"]
 
 
 def test_an_unknown_kind_of_solver_file_is_named(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import shlex
 import shutil
@@ -11,10 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from ..base.errors import FormatError
-from ..formats import put, read_with_report
+from ..formats import losses, put, read_with_report
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..meshes.renumbering import renumbering
+
+_log = logging.getLogger(__name__)
 
 #: Suffix of the mesh file, and that of the solution file.
 FILE_KINDS = {
@@ -84,6 +87,7 @@ class FileSolver:
         self.folder = Path(folder)
         self.kind = kind
         self.count = first
+        self._losses_told = False
 
     def __call__(self, mesh: Mesh, fields: Mapping[str, Any]) -> dict[str, Field]:
         """Write the mesh, run the command, and return the fields it wrote.
@@ -98,6 +102,7 @@ class FileSolver:
         mesh_file, solution_file = self._paths()
         solution_file.unlink(missing_ok=True)
         sent = as_fields(mesh, fields) if self.kind in _WITH_FIELDS else {}
+        self._tell_losses(mesh_file, mesh, sent)
         put(mesh_file, mesh, sent)
         self._run(mesh_file, solution_file)
         if not solution_file.is_file():
@@ -120,6 +125,13 @@ class FileSolver:
             raise RuntimeError(
                 f"cannot run the solver {self.command[0]!r}: there is no such command"
             )
+
+    def _tell_losses(self, path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
+        """Log once what the command will not be told of the mesh."""
+        if not self._losses_told:
+            for text in losses(mesh, fields, path):
+                _log.warning("%s: this format does not carry %s", path, text)
+        self._losses_told = True
 
     def _paths(self) -> tuple[Path, Path]:
         mesh_suffix, solution_suffix = FILE_KINDS[self.kind]
