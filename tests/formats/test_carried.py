@@ -2,12 +2,14 @@
 
 import json
 
+import meshio
 import numpy as np
 import pytest
 from documents import ROOT, rows_below
 from meshes import square, two_region_cube, two_regions
 
 from anistar import Field, Mesh, formats
+from anistar.base.errors import FormatError
 from anistar.cli import main
 from anistar.formats.carried import ALL, ASPECTS, CARRIED, holdable, losses
 from anistar.meshes.fields import as_fields
@@ -74,6 +76,7 @@ def came_back(mesh, fields, again, back):
         )
 
     kept = {
+        "cells": np.array_equal(again.cells, mesh.cells),
         "height": again.z == mesh.z,
         "tags of cells": has_tags("cells", "cell_tags", mesh.dim),
         "tags of facets": has_tags("facets", "facet_tags", mesh.dim - 1),
@@ -155,6 +158,55 @@ def test_a_format_that_nothing_here_reads_is_not_vouched_for():
     assert "the tags of facets" in told[2]
     assert told[-1].endswith("meshio writes this format, which may keep some of it")
     assert losses(square(1), {}, "m.sol") == ["the mesh (4 points, 2 cells)"]
+
+
+def refusal(path, mesh):
+    """Why a mesh cannot be written to a path; None if it was."""
+    try:
+        formats.put(path, mesh, {})
+    except FormatError as error:
+        return str(error)
+    return None
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning:meshio")
+@pytest.mark.parametrize("dim", [2, 3])
+def test_no_format_of_meshio_loses_a_cell_without_an_error(tmp_path, dim):
+    mesh, kind = rich(dim)[0], {2: "triangle", 3: "tetra"}[dim]
+    known = [s for s in meshio.extension_to_filetypes if formats.is_known(f"m{s}")]
+    written = set()
+    for suffix in sorted(set(known) - CARRIED.keys()):
+        path = tmp_path / suffix / f"m{suffix}"
+        path.parent.mkdir()
+        if why := refusal(path, mesh):
+            assert "place for t" in why or "meshio fails" in why or "SVG can only" in why
+            assert list(path.parent.iterdir()) == []
+            continue
+        assert not any(".part" in beside.name for beside in path.parent.iterdir())
+        if suffix != ".svg":  # meshio does not read it
+            assert len(meshio.read(path).cells_dict[kind]) == mesh.n_cells
+        written.add(suffix)
+    surfaces, volumes = {".obj", ".off", ".ply", ".stl", ".wkt"}, {".cgns", ".ele", ".node"}
+    assert written >= {".dat", ".inp", ".vol", ".xml"} | (surfaces if dim == 2 else volumes)
+    assert not written & (volumes if dim == 2 else surfaces)
+
+
+def test_a_volume_goes_to_no_file_of_triangles(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    formats.write("in.vtu", two_region_cube())
+    for more in ([], ["--dry-run"]):
+        assert main(["convert", "in.vtu", "out.stl", *more]) == 2
+        said = capsys.readouterr().err
+        assert "cannot write" in said
+        assert "files .stl have no place for tetrahedra, the mesh has 48" in said
+    assert [path.name for path in tmp_path.iterdir()] == ["in.vtu"]
+
+
+def test_what_meshio_warns_of_is_told_as_lost(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    formats.write("in.vtu", two_regions())
+    assert main(["convert", "in.vtu", "out.stl"]) == 0
+    assert "lost: all, as meshio says: Warning: STL can only write" in capsys.readouterr().out
 
 
 def test_fields_at_nodes_of_cells_are_lost_everywhere():

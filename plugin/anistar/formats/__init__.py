@@ -19,7 +19,7 @@ from ..meshes.mesh import Mesh
 from ..metric.base.given import AnyFields, given_fields
 from ..objects import AnyMesh, Content, Form, made, opened, register
 from . import inp_reader, med_reader, meshio_writer, su2_reader, su2_writer
-from .carried import holdable, losses
+from .carried import CARRIED, holdable, losses
 from .content.assembly import ReadReport, assembled
 from .content.export import exported
 from .content.raw import RawMesh
@@ -185,14 +185,14 @@ def write(path: PathLike, mesh: AnyMesh, fields: AnyFields = None) -> None:
     held = opened(mesh)
     given = held.fields if fields is None else given_fields(held.fields, fields).fields
     checked = as_fields(held.mesh, given)
-    put(path, held.mesh, checked)
+    told = put(path, held.mesh, checked)
     if suffix_of(Path(path)) not in SOLUTIONS:
-        for text in losses(held.mesh, checked, path):
+        for text in [*losses(held.mesh, checked, path), *told]:
             _log.warning("%s: this format does not carry %s", path, text)
 
 
-def put(path: PathLike, mesh: Mesh, fields: Mapping[str, Field]) -> None:
-    """Write as `write`, without a word on what is lost."""
+def put(path: PathLike, mesh: Mesh, fields: Mapping[str, Field]) -> list[str]:
+    """Write as `write`, and return what meshio says is lost; what `losses` tells is not logged."""
     path = Path(path)
     for name, field in fields.items():
         if field.on == "cell_nodes":
@@ -202,14 +202,15 @@ def put(path: PathLike, mesh: Mesh, fields: Mapping[str, Field]) -> None:
             )
     if suffix_of(path) in _WRITERS:
         _WRITERS[suffix_of(path)](path, mesh, fields)
-        return
+        return []
     if suffix_of(path) in SOLUTIONS:
         medit_files.write_solution(path, mesh, fields)
-        return
+        return []
     if not is_known(path):
         raise FormatError(f"cannot write {path}: no format has the suffix {path.suffix!r}")
     with replaced(path) as temporary:
-        meshio_writer.write(temporary, exported(mesh, fields), path)
+        said = meshio_writer.write(temporary, exported(mesh, fields), path)
+    return [f"all, as meshio says: {said}"] if said and suffix_of(path) not in CARRIED else []
 
 
 def is_known(path: PathLike) -> bool:

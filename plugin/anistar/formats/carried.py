@@ -15,6 +15,14 @@ from .suffixes import suffix_of
 #: Whole numbers up to here are doubles too.
 LARGEST_DOUBLE = 2**53
 
+#: What cells are called in two and three dimensions.
+CELL_NAMES = {2: "triangles", 3: "tetrahedra"}
+# Formats whose cells are all of one dimension.
+_ONE_DIMENSION = {
+    **dict.fromkeys((".obj", ".off", ".ply", ".stl", ".svg", ".wkt"), 2),
+    **dict.fromkeys((".cgns", ".ele", ".node"), 3),
+}
+
 _Found = Callable[[Mesh, Mapping[str, Field]], str]
 
 
@@ -55,6 +63,7 @@ def _is_too_large(name: str, field: Field) -> bool:
 
 
 ASPECTS: dict[str, _Found] = {
+    "cells": lambda mesh, _: f"the cells ({mesh.n_cells} {CELL_NAMES[mesh.dim]})",
     "height": lambda mesh, _: f"the height z = {mesh.z:g}" if mesh.z else "",
     "tags of cells": _of_tags("cells", "cell_tags"),
     "tags of facets": _of_tags("facets", "facet_tags"),
@@ -91,7 +100,7 @@ CARRIED: dict[str, frozenset[str]] = {
     - {"height", "full tensors", "names of fields", "blanks in names", "labels", "large labels"},
     ".msh": ALL - {"large labels"},
     ".pvd": ALL,
-    ".su2": frozenset({"tags of facets", "names of facets"}),
+    ".su2": frozenset({"cells", "tags of facets", "names of facets"}),
     ".vtk": ALL - _NAMES - {"blanks in names"},
     ".vtu": ALL,
     ".xdmf": ALL - _NAMES - {"corners"},
@@ -99,6 +108,7 @@ CARRIED: dict[str, frozenset[str]] = {
 }
 """Of the formats that are written and read here, by their suffix."""
 
+_NOT_READ_HERE = frozenset({"cells"})
 # A solution is a part of what goes to a medit mesh.
 _SOLUTIONS = {".sol": CARRIED[".mesh"] & _OF_FIELDS, ".solb": CARRIED[".meshb"] & _OF_FIELDS}
 # Their names have no place without the fields, blanks none without the names.
@@ -135,7 +145,9 @@ def losses(mesh: Mesh, fields: Mapping[str, Field], path: str | os.PathLike[str]
         lost.append(f"the mesh ({mesh.n_points} points, {mesh.n_cells} cells)")
         carried = _SOLUTIONS[suffix] | (ALL - _OF_FIELDS)
     else:
-        carried = CARRIED.get(suffix, frozenset())
+        carried = CARRIED.get(suffix, _NOT_READ_HERE)
+    if not holds_cells(suffix, mesh.dim):
+        carried -= {"cells"}
     missing = [name for name in ASPECTS if name not in carried]
     for name in missing:
         if not set(_WITHIN.get(name, ())) & set(missing):
@@ -143,6 +155,11 @@ def losses(mesh: Mesh, fields: Mapping[str, Field], path: str | os.PathLike[str]
     if suffix not in _SOLUTIONS and suffix not in CARRIED and lost:
         lost[-1] += "; meshio writes this format, which may keep some of it"
     return lost
+
+
+def holds_cells(suffix: str, dim: int) -> bool:
+    """Return whether a format has a place for the cells of meshes of a dimension."""
+    return _ONE_DIMENSION.get(suffix, dim) == dim
 
 
 def holdable(

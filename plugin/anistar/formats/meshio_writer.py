@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import tempfile
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,7 +17,8 @@ import numpy as np
 
 from ..base.arrays import AnyArray
 from ..base.errors import FormatError
-from .content.raw import KIND_DIM, RawMesh
+from .carried import CELL_NAMES, holds_cells
+from .content.raw import KIND_DIM, Block, RawMesh
 from .content.tag_arrays import TAGS, refuse_reserved
 from .med_reader import LONGEST_GROUP
 from .parsing.hdf5 import library
@@ -24,42 +26,85 @@ from .suffixes import suffix_of
 from .vtk.legacy_reader import OWN_TITLE
 
 _XDMF = (".xdmf", ".xmf")
+# Formats that take no single points among the cells, or no cells of lower dimension.
+_WITHOUT_POINTS = (*_XDMF, ".inp")
+_CELLS_ALONE = (".dat", ".f3grid", ".hmf", ".obj", ".tec", ".xml")
+# meshio writes numbers there as `np.int64(4)`, which nothing can read.
+_DAMAGED = (".ugrid",)
+_DAMAGED_DATA = (".xml",)
 # Under which meshio looks for the families of MED.
 _FAMILIES = "cell_tags"
 
 
 def is_known(suffix: str) -> bool:
-    """Return whether meshio has a format of this suffix."""
+    """Return whether meshio has a format of this suffix that can be read again."""
     import meshio
 
-    return suffix in meshio.extension_to_filetypes
+    return suffix in meshio.extension_to_filetypes and suffix not in _DAMAGED
 
 
-def write(temporary: Path, content: RawMesh, path: Path) -> None:
-    """Write through meshio, tags as the integer array `medit:ref`; errors name `path`."""
-    import meshio
+def write(temporary: Path, content: RawMesh, path: Path) -> str:
+    """Write through meshio, tags as the integer array `medit:ref`; errors name `path`.
 
+    Further files that the format has are put beside the temporary one.
+
+    Returns
+    -------
+    str
+        What meshio warns of, in one line.
+
+    Raises
+    ------
+    FormatError
+        If the format has no place for the cells, or meshio fails.
+    """
     refuse_reserved(content, path)
-    blocks, options = content.blocks, {}
-    if suffix_of(path) in _XDMF:
-        # No reader takes single points among other cells, and meshio puts the numbers into a
-        # second file that knows the temporary name.
+    suffix, blocks = suffix_of(path), content.blocks
+    _require_place(blocks[0], path)
+    if suffix in _CELLS_ALONE:
+        blocks = blocks[:1]
+    elif suffix in _WITHOUT_POINTS:
         blocks = [block for block in blocks if block.kind != "vertex"]
-        options = {"data_format": "XML"}
+    with tempfile.TemporaryDirectory(prefix=temporary.stem, dir=temporary.parent) as folder:
+        inside = Path(folder) / path.name
+        with _guarded(path, inside) as said:
+            _write(inside, content, blocks)
+        for other in Path(folder).iterdir():
+            other.replace(temporary if other == inside else temporary.with_name(other.name))
+    return " ".join(said.getvalue().split())
+
+
+def _require_place(cells: Block, path: Path) -> None:
+    """Raise if a format has no place for the cells of a mesh."""
+    dim = KIND_DIM[cells.kind]
+    if not holds_cells(suffix_of(path), dim):
+        raise FormatError(
+            f"cannot write {path}: files {path.suffix} have no place for {CELL_NAMES[dim]}, the "
+            f"mesh has {len(cells.rows)}"
+        )
+
+
+def _write(inside: Path, content: RawMesh, blocks: list[Block]) -> None:
+    import meshio
+
     cell_data = {name: [block.data[name] for block in blocks] for name in blocks[0].data}
     cell_data[TAGS] = [np.asarray(block.tags) for block in blocks]
-    cells = [(block.kind, block.rows) for block in blocks]
-    with _guarded(path, temporary):
-        mesh = meshio.Mesh(
-            content.points, cells, point_data=content.point_data, cell_data=cell_data
-        )
-        if suffix_of(path) == ".med":
-            _write_med(temporary, mesh, content)
-        else:
-            meshio.write(temporary, mesh, **options)
-    if suffix_of(path) == ".vtk":
-        version, _, rest = temporary.read_bytes().split(b"\n", 2)
-        temporary.write_bytes(b"\n".join([version, OWN_TITLE.encode(), rest]))
+    suffix = suffix_of(inside)
+    mesh = meshio.Mesh(
+        content.points,
+        [(block.kind, block.rows) for block in blocks],
+        point_data=content.point_data,
+        cell_data={} if suffix in _DAMAGED_DATA else cell_data,
+    )
+    if suffix == ".med":
+        _write_med(inside, mesh, content)
+    elif suffix in _XDMF:  # else the numbers go into a second file
+        meshio.write(inside, mesh, data_format="XML")
+    else:
+        meshio.write(inside, mesh)
+    if suffix == ".vtk":
+        version, _, rest = inside.read_bytes().split(b"\n", 2)
+        inside.write_bytes(b"\n".join([version, OWN_TITLE.encode(), rest]))
 
 
 def _write_med(temporary: Path, mesh: Any, content: RawMesh) -> None:
@@ -112,8 +157,11 @@ def _families(content: RawMesh) -> tuple[dict[int, list[str]], list[AnyArray]]:
 
 
 @contextlib.contextmanager
-def _guarded(path: Path, temporary: Path) -> Iterator[None]:
-    """Turn every way in which meshio fails into a `FormatError` that names the file."""
+def _guarded(path: Path, temporary: Path) -> Iterator[io.StringIO]:
+    """Turn every way in which meshio fails into a `FormatError` that names the file.
+
+    Gives what meshio says.
+    """
     import meshio
 
     said = io.StringIO()
@@ -124,7 +172,7 @@ def _guarded(path: Path, temporary: Path) -> Iterator[None]:
             warnings.catch_warnings(),
         ):
             warnings.simplefilter("ignore")
-            yield
+            yield said
     except OSError as error:
         raise FormatError(f"cannot write {path}: {error.strerror or error}") from error
     except SystemExit as error:

@@ -41,9 +41,11 @@ def run(arguments: argparse.Namespace) -> int:
         require_own(output, 1)
     if arguments.dry_run:
         with tempfile.TemporaryDirectory() as folder:
-            put(Path(folder) / output.name, mesh, kept)  # what cannot be written is an error
+            lost += put(
+                Path(folder) / output.name, mesh, kept
+            )  # what cannot be written is an error
     else:
-        put(output, mesh, kept)
+        lost += put(output, mesh, kept)
         console.say_replaced(replaced, "what was read from it", beside_json=arguments.json)
     if arguments.json:
         console.show_json({**report.as_dict(), "lost": lost})
