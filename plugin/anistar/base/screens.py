@@ -14,6 +14,9 @@ SECONDS_BETWEEN_LINES = 1.0
 
 _BAR = 24
 
+# A VT100 and all since it: erase from the cursor on; keep its place, and take it again.
+_ERASE, _KEEP_PLACE, _TAKE_PLACE = "\x1b[J", "\x1b7", "\x1b8"
+
 
 @dataclass(frozen=True, slots=True)
 class Row:
@@ -101,41 +104,60 @@ def _is_notebook() -> bool:
 
 
 class TerminalScreen:
-    """Bars that are drawn over themselves, and gone at the end."""
+    """Bars below the line where the program writes, drawn over themselves, and gone at the end.
+
+    Standard output and error stay what they are, and the cursor returns to where it was: whatever
+    is written meanwhile, be it by another program, stands where it would stand without the bars.
+    """
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
-        self._live: Any = None
+        self._console: Any = None
 
     def __enter__(self) -> Self:
         from rich.console import Console  # takes a while, and most calls end before
-        from rich.live import Live
 
         console = Console(file=self._stream)
-        if not console.is_dumb_terminal:
-            self._live = Live(console=console, transient=True, auto_refresh=False)
-            self._live.start()
+        if not (console.is_dumb_terminal or console.legacy_windows):
+            self._console = console
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._live is not None:
-            self._live.stop()
+        self._write(_ERASE)
 
     def draw(self, rows: Sequence[Row]) -> None:
         """Show these rows instead of those before."""
-        if self._live is None:
+        if self._console is None:
             return
-        from rich.progress_bar import ProgressBar
-        from rich.table import Table
-        from rich.text import Text
+        with self._console.capture() as drawn:
+            self._console.print(_table(rows))
+        lines = drawn.get().splitlines()[: self._console.height - 1]
+        below = "".join(f"\r\n{line}" for line in lines)
+        self._write(_room(len(lines)) + _ERASE + _KEEP_PLACE + below + _TAKE_PLACE)
 
-        table = Table.grid(padding=(0, 1))
-        for row in rows:
-            bar = "" if row.fraction is None else ProgressBar(1.0, row.fraction, width=_BAR)
-            words = (row.name, row.phase, row.how_far, row.note, row.time)
-            name, phase, how_far, note, time = map(Text, words)
-            table.add_row(name, phase, bar, how_far, note, time)
-        self._live.update(table, refresh=True)
+    def _write(self, text: str) -> None:
+        if self._console is not None:
+            self._stream.write(text)
+            self._stream.flush()
+
+
+def _room(lines: int) -> str:
+    """Scroll until there are so many lines below the cursor, which stays in its line."""
+    return "\x1bD" * lines + "\x1b[A" * lines
+
+
+def _table(rows: Sequence[Row]) -> Any:
+    from rich.progress_bar import ProgressBar
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table.grid(padding=(0, 1))
+    for row in rows:
+        bar = "" if row.fraction is None else ProgressBar(1.0, row.fraction, width=_BAR)
+        words = (row.name, row.phase, row.how_far, row.note, row.time)
+        name, phase, how_far, note, time = map(Text, words)
+        table.add_row(name, phase, bar, how_far, note, time)
+    return table
 
 
 class NotebookScreen:
