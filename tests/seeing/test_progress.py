@@ -234,3 +234,23 @@ def test_progress_is_turned_on_and_off_by_a_call(monkeypatch):
         anistar.progress(None)
     with pytest.raises(TypeError, match="progress takes True, False or None, not 'on'"):
         anistar.progress("on")
+
+
+def test_silence_in_one_thread_is_not_that_of_another(frames):
+    begun, end = threading.Event(), threading.Event()
+
+    def work():
+        with display.quiet():
+            begun.set()
+            end.wait()
+
+    silent = threading.Thread(target=work, daemon=True)
+    silent.start()
+    begun.wait()
+    assert _is_shown("beside it")
+    with display.quiet():
+        with display.quiet(False):
+            assert not _is_shown("still silent")
+        end.set()
+        silent.join()
+    assert _is_shown("after both")

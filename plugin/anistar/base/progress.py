@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import contextvars
 import os
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar, copy_context
 from dataclasses import dataclass, field
 
 from .screens import Row, Screen, screen_for
@@ -26,6 +26,7 @@ CoreCallback = Callable[[str, float, int], object]
 """The same with the number of vertices, as the core calls it."""
 
 _asked: bool | None = None
+_is_quiet: ContextVar[bool] = ContextVar("is_quiet", default=False)
 _lock = threading.Lock()
 
 
@@ -47,14 +48,12 @@ def progress(shown: bool | None) -> None:
 
 @contextmanager
 def quiet(is_quiet: bool = True) -> Iterator[None]:
-    """Show no progress while the block runs, or leave it as it is."""
-    global _asked
-    before = _asked
-    _asked = False if is_quiet else before
+    """Show no progress of what this thread does in the block, or leave it as it is."""
+    token = _is_quiet.set(is_quiet or _is_quiet.get())
     try:
         yield
     finally:
-        _asked = before
+        _is_quiet.reset(token)
 
 
 @dataclass(eq=False)
@@ -170,7 +169,7 @@ def current_task() -> Task | None:
 
 
 def _screen() -> Screen | None:
-    asked = _asked
+    asked = False if _is_quiet.get() else _asked
     if asked is None and (said := os.environ.get(ENVIRONMENT, "")):
         asked = said not in ("0", "off", "false", "no")
     return None if asked is False else screen_for(sys.stderr, is_wanted=asked is True)
@@ -187,7 +186,7 @@ class _Display:
         self._screen = screen
         self._ended = threading.Event()
         # A notebook knows by the context where the output of a cell goes.
-        context = contextvars.copy_context()
+        context = copy_context()
         self._painter = threading.Thread(target=context.run, args=(self._paint,), daemon=True)
 
     def begin(self) -> None:
