@@ -8,15 +8,10 @@ import anistar
 from anistar.cli import console, main
 from anistar.demo.volume import front, unit_cube
 from anistar.loops import forecast as forecasts
-from anistar.loops.forecast import Forecast, forecast, forecast_of_targets, learn
+from anistar.loops.forecast import THIS_MACHINE, Forecast, Speed, forecast, forecast_of_targets
 from anistar.metric import Estimate
 
 ESTIMATE = Estimate(vertices=1e5, elements=2e5, memory=4e7)
-
-
-@pytest.fixture(autouse=True)
-def nothing_learned(monkeypatch):
-    monkeypatch.setattr(forecasts, "_learned", {})
 
 
 @pytest.mark.parametrize(("dim", "off"), [(2, 0.03), (3, 0.35)])
@@ -33,35 +28,56 @@ def test_the_points_are_foretold(dim, off):
 
 
 def test_budgets_bound_what_is_foretold():
-    free = forecast(ESTIMATE, 2, anistar.RemeshOptions())
+    speed = Speed()
+    free = forecast(ESTIMATE, 2, anistar.RemeshOptions(), speed)
     assert (free.vertices, free.cells) == (1e5, 2e5)
-    few = forecast(ESTIMATE, 2, anistar.RemeshOptions(max_vertices=1000))
+    few = forecast(ESTIMATE, 2, anistar.RemeshOptions(max_vertices=1000), speed)
     assert few.vertices == 1000
     assert few.memory == pytest.approx(0.01 * free.memory)
-    short = forecast(ESTIMATE, 2, anistar.RemeshOptions(max_seconds=0.25))
+    short = forecast(ESTIMATE, 2, anistar.RemeshOptions(max_seconds=0.25), speed)
     assert short.seconds == 0.25
 
 
-def test_the_speed_is_that_of_the_last_mesh_of_this_process():
-    learn(2, 1e5, 50.0)
-    assert forecast(ESTIMATE, 2, anistar.RemeshOptions()).seconds == pytest.approx(50.0)
-    learn(2, 10.0, 0.01)  # too short to tell anything
-    assert forecast(ESTIMATE, 2, anistar.RemeshOptions()).seconds == pytest.approx(50.0)
+def test_the_speed_is_that_of_the_last_mesh_after_that_of_a_probe(monkeypatch):
+    speed = Speed()
+    monkeypatch.setattr(forecasts, "_probe_seconds", lambda: 3 * forecasts.PROBE_SECONDS)
+    told = 1e5 * forecasts.SECONDS_PER_VERTEX[2]
+    assert speed.seconds(2, 1e5) == pytest.approx(3 * told)
+    speed.learn(2, 1e5, 50.0)
+    assert speed.seconds(2, 2e5) == pytest.approx(100.0)
+    speed.learn(2, 10.0, 0.01)  # too short to tell anything
+    assert speed.seconds(2, 2e5) == pytest.approx(100.0)
+    in_space = 1e5 * forecasts.SECONDS_PER_VERTEX[3]
+    assert speed.seconds(3, 1e5) == pytest.approx(3 * in_space)
 
 
 def test_short_work_is_not_worth_a_probe(monkeypatch):
     def refuse():
         raise AssertionError("it was probed")
 
-    monkeypatch.setattr(forecasts, "_probed", refuse)
-    small = Estimate(vertices=1e3, elements=2e3, memory=4e5)
-    assert 0 < forecast(small, 2, anistar.RemeshOptions()).seconds < 0.1
+    monkeypatch.setattr(forecasts, "_probe_seconds", refuse)
+    assert 0 < Speed().seconds(2, 1e3) < 0.1
+
+
+def test_the_speed_is_learned_from_finished_meshes_by_what_was_expected(monkeypatch):
+    learned = []
+    monkeypatch.setattr(THIS_MACHINE, "learn", lambda *words: learned.append(words))
+    mesh = square(8)
+    u = np.tanh(9 * mesh.points[:, 0])
+    stopped = anistar.adapt(mesh, {"u": u}, target_complexity=400, max_vertices=120)
+    assert anistar.validate(stopped.mesh, mesh) == []
+    assert not stopped.report.remesh.converged
+    assert learned == []
+    done = anistar.adapt(mesh, {"u": u}, target_complexity=100)
+    ((dim, vertices, seconds),) = learned
+    assert (dim, vertices) == (2, done.report.forecast.vertices)
+    assert 0 < seconds < done.report.seconds
 
 
 def test_several_targets_take_the_largest_mesh_and_all_the_time():
-    options = anistar.RemeshOptions()
-    learn(2, 1e5, 50.0)
-    one, both = (forecast_of_targets(c, 2, options) for c in ((8000,), (4000, 8000)))
+    options, speed = anistar.RemeshOptions(), Speed()
+    speed.learn(2, 1e5, 50.0)
+    one, both = (forecast_of_targets(c, 2, options, speed) for c in ((8000,), (4000, 8000)))
     assert both.vertices == one.vertices
     assert both.seconds == pytest.approx(1.5 * one.seconds)
 

@@ -29,7 +29,7 @@ from ..transfer import transfer
 from .adapt_options import AdaptOptions
 from .adapt_report import AdaptReport
 from .element_counts import Wanted, made_to_count
-from .forecast import Forecast, forecast, learn
+from .forecast import THIS_MACHINE, Forecast, forecast
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -162,14 +162,15 @@ def adapt_to(
         line.expected_seconds = known - started + expected.seconds
         ledger, done, corrections = made_to_count(mesh, chosen, options, wanted, geometry, project)
         if ledger.is_featureless:
-            tell(
-                [f"no second derivative above the noise in {', '.join(names)}: the mesh is uniform"]
-            )
+            said = ", ".join(names)
+            tell([f"no second derivative above the noise in {said}: the mesh is uniform"])
         line.enter("transfer", note=f"{done.mesh.n_points:,} points")
         carried = transfer(mesh, fields, done.mesh, options.transfer)
         line.enter("certificate")
         stars = _judged(done, options.remesh)
-        learn(mesh.dim, expected.vertices, (time.perf_counter() - known) / (1 + corrections))
+        if done.report.converged:
+            taken = (time.perf_counter() - known) / (1 + corrections)
+            THIS_MACHINE.learn(mesh.dim, ledger.estimate.vertices, taken)
     report = AdaptReport(
         metric_fields=names,
         metric=ledger,

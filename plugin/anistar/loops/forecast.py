@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -34,9 +33,36 @@ PROBE_SECONDS = 0.045
 #: Below this the time is not worth a probe.
 WORTH_A_PROBE = 0.5
 
-# By dimension: how the time of the last mesh of this process was to what was told. The best
-# probe of a loop is its step before.
-_learned: dict[int, float] = {}
+
+class Speed:
+    """How fast a machine makes meshes: as it made the last one, or a small one before the first.
+
+    The best probe of a loop is its step before.
+    """
+
+    def __init__(self) -> None:
+        # How much slower it is than the rates, by the dimension of a last mesh, and of a probe.
+        self._of_last: dict[int, float] = {}
+        self._probed: float | None = None
+
+    def seconds(self, dim: int, vertices: float) -> float:
+        """Return what a mesh of so many expected vertices takes."""
+        told = vertices * SECONDS_PER_VERTEX[dim]
+        if dim in self._of_last:
+            return told * self._of_last[dim]
+        if told <= WORTH_A_PROBE:
+            return told
+        if self._probed is None:
+            self._probed = _probe_seconds() / PROBE_SECONDS
+        return told * self._probed
+
+    def learn(self, dim: int, vertices: float, seconds: float) -> None:
+        """Take the time of a finished mesh, of so many expected vertices."""
+        if seconds > WORTH_A_PROBE:
+            self._of_last[dim] = seconds / (vertices * SECONDS_PER_VERTEX[dim])
+
+
+THIS_MACHINE = Speed()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +95,9 @@ class Forecast:
         return attributes(self)
 
 
-def forecast(estimate: Estimate, dim: int, options: RemeshOptions) -> Forecast:
+def forecast(
+    estimate: Estimate, dim: int, options: RemeshOptions, speed: Speed = THIS_MACHINE
+) -> Forecast:
     """Return what the mesh of a metric takes.
 
     Parameters
@@ -79,15 +107,12 @@ def forecast(estimate: Estimate, dim: int, options: RemeshOptions) -> Forecast:
     dim : int
     options : RemeshOptions
         Its budgets bound the mesh and the time.
+    speed : Speed
     """
     vertices = bounded_vertices(estimate.vertices, options)
     share = vertices / estimate.vertices if estimate.vertices > 0 else 1.0
     cells = share * estimate.elements if share == 1.0 else vertices * CELLS_PER_VERTEX[dim]
-    seconds = vertices * SECONDS_PER_VERTEX[dim]
-    if dim in _learned:
-        seconds *= _learned[dim]
-    elif seconds > WORTH_A_PROBE:
-        seconds *= _probed()
+    seconds = speed.seconds(dim, vertices)
     if options.max_seconds is not None:
         seconds = min(seconds, options.max_seconds)
     memory = vertices * BYTES_PER_VERTEX[dim]
@@ -95,7 +120,7 @@ def forecast(estimate: Estimate, dim: int, options: RemeshOptions) -> Forecast:
 
 
 def forecast_of_targets(
-    complexities: Iterable[float], dim: int, options: RemeshOptions
+    complexities: Iterable[float], dim: int, options: RemeshOptions, speed: Speed = THIS_MACHINE
 ) -> Forecast:
     """Return what the largest of several meshes takes, in the time of all of them together.
 
@@ -105,25 +130,19 @@ def forecast_of_targets(
         Targets, at least one.
     dim : int
     options : RemeshOptions
+    speed : Speed
     """
     estimates = [
         Estimate(vertices=n, elements=n * CELLS_PER_VERTEX[dim], memory=n * BYTES_PER_VERTEX[dim])
         for n in (vertices_for(target, dim) for target in complexities)
     ]
-    each = [forecast(estimate, dim, options) for estimate in estimates]
+    each = [forecast(estimate, dim, options, speed) for estimate in estimates]
     largest = max(each, key=lambda one: one.vertices)
     return replace(largest, seconds=sum(one.seconds for one in each))
 
 
-def learn(dim: int, vertices: float, seconds: float) -> None:
-    """Take the time of a mesh, of so many expected vertices, for the speed of this machine."""
-    if seconds > WORTH_A_PROBE:
-        _learned[dim] = seconds / (vertices * SECONDS_PER_VERTEX[dim])
-
-
-@cache
-def _probed() -> float:
-    """Return how much slower this machine is than where the rates were measured."""
+def _probe_seconds() -> float:
+    """Return what the mesh takes that took `PROBE_SECONDS` where the rates were measured."""
     square = Mesh(
         points=np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),
         cells=np.array([[0, 1, 2], [0, 2, 3]]),
@@ -131,4 +150,4 @@ def _probed() -> float:
     metric = np.tile(PROBE_COMPLEXITY * np.eye(2), (square.n_points, 1, 1))
     began = time.perf_counter()
     remesh(square, metric)
-    return (time.perf_counter() - began) / PROBE_SECONDS
+    return time.perf_counter() - began
