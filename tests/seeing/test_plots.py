@@ -1,10 +1,13 @@
 """Plots are made off the screen, show what they say, and name what cannot be shown."""
 
+import importlib.util
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from matplotlib.backend_bases import FigureManagerBase
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from meshes import square, two_regions
 
 import anistar
@@ -13,6 +16,29 @@ from anistar.meshes.plotted import Subject
 from anistar.views.scene import scene
 
 BACKENDS = ["matplotlib", "pyvista"]
+
+
+@pytest.fixture(autouse=True)
+def small_pictures(monkeypatch):
+    """They are drawn in a fraction of the time."""
+    monkeypatch.setattr("anistar.views.matplotlib_view._SIZE", (4.0, 3.0))
+    if importlib.util.find_spec("pyvista"):
+        monkeypatch.setattr("anistar.views.pyvista_view._WINDOW", (400, 300))
+
+
+@pytest.fixture
+def windows(monkeypatch):
+    """A window system for Matplotlib, and the figures that are shown there."""
+    pyplot, shown = pytest.importorskip("matplotlib.pyplot"), []
+
+    class Manager(FigureManagerBase):
+        def show(self):
+            """Open a window that is gone at the end of the script."""
+
+    monkeypatch.setattr(FigureCanvasAgg, "manager_class", Manager)
+    monkeypatch.setattr(pyplot, "show", lambda: shown.append(pyplot.gcf()))
+    yield shown
+    pyplot.close("all")
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +103,37 @@ def test_what_is_drawn_is_returned_to_be_changed(plane):
     plotter.close()
 
 
+def test_a_figure_is_shown_in_a_window_that_the_script_waits_for(plane, windows):
+    assert windows == [plane.plot(backend="matplotlib", show=True)]
+
+
+def test_a_figure_without_a_window_is_no_warning_and_is_not_kept(plane, monkeypatch):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    monkeypatch.setenv("DISPLAY", ":0")  # where Matplotlib warns
+    pyplot.switch_backend("agg")
+    assert plane.plot(backend="matplotlib", show=True).axes
+    assert pyplot.get_fignums() == []
+
+
+def test_a_plotter_is_shown_and_saved_as_well(plane, tmp_path, monkeypatch):
+    pyvista, shown = pytest.importorskip("pyvista"), []
+    monkeypatch.setattr(pyvista.Plotter, "show", lambda self, **words: shown.append((self, words)))
+    plotter = plane.plot(backend="pyvista", show=True, path=tmp_path / "u.png")
+    assert shown == [(plotter, {"auto_close": False})]
+    assert not plotter.off_screen
+    assert share_of_ink(pixels(tmp_path / "u.png")) > 0.1
+    plotter.close()
+
+
+def test_the_file_chooses_who_draws_where_nobody_is_asked_for(plane, tmp_path):
+    pytest.importorskip("pyvista")
+    figure = plane.plot(path=tmp_path / "u.svg")
+    assert figure.axes
+    assert "<svg" in (tmp_path / "u.svg").read_text()
+    plane.plot(path=str(tmp_path / "u.jpg")).close()
+    assert share_of_ink(pixels(tmp_path / "u.jpg")) > 0.1
+
+
 def test_a_scene_holds_the_cells_behind_the_cut_and_names_the_tags(volume):
     seen = scene(Subject(mesh=two_regions(4)), "tags", clip="x")
     assert len(seen.triangles) == two_regions(4).n_cells / 2
@@ -106,6 +163,7 @@ def test_a_scene_holds_the_cells_behind_the_cut_and_names_the_tags(volume):
         ({"clip": "x", "origin": (-5, 0)}, "the cut takes the whole mesh away"),
         ({"clip": "x", "origin": (1, 2, 3)}, "origin must have 2 coordinates"),
         ({"origin": (0, 0)}, "give clip too"),
+        ({"backend": "pyvista", "path": "u.svg"}, 'not .svg: .* backend="matplotlib"'),
         ({"backend": "gnuplot"}, "backend must be one of pyvista, matplotlib, not 'gnuplot'"),
     ],
 )

@@ -75,11 +75,12 @@ class Plotted:
         edges : bool
             Draw the edges of the cells.
         path : path, optional
-            Save the picture there: PNG, by Matplotlib also SVG or PDF.
+            Save the picture there: PNG, JPEG or TIFF, and by Matplotlib SVG or PDF.
         show : bool, optional
-            Open a window, or show it in the notebook; by default where there is a screen and no
-            `path` is given.
+            Open a window and wait until it is closed, or show it in the notebook; by default where
+            there is a screen and no `path` is given.
         backend : {"pyvista", "matplotlib"}, optional
+            By default the first that is installed and writes such a file.
 
         Returns
         -------
@@ -88,7 +89,8 @@ class Plotted:
         Raises
         ------
         ValueError
-            If there is no such field, an array fits neither points nor cells, or nothing is left.
+            If there is no such field, an array fits neither points nor cells, nothing is left, or
+            PyVista is asked for a file that it does not write.
         ImportError
             If neither package is installed.
         """

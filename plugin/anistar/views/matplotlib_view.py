@@ -13,6 +13,7 @@ from .palette import INK, LINE, colours_of_categories, colours_of_numbers
 from .scene import Scene
 
 try:
+    from matplotlib.backend_bases import FigureManagerBase
     from matplotlib.cm import ScalarMappable
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.colors import Normalize
@@ -61,7 +62,13 @@ def _figure(show: bool) -> Any:
 
 
 def _show(figure: Any) -> None:
-    figure.show()
+    """Open a window, and wait until it is closed where no shell keeps it alive."""
+    from matplotlib import pyplot
+
+    if type(figure.canvas.manager).show is not FigureManagerBase.show:
+        pyplot.show()
+    elif not pyplot.isinteractive():  # which a notebook is: it shows the figures below the cell
+        pyplot.close(figure)
 
 
 def _colours(figure: Any, axes: Any, scene: Scene) -> Any:

@@ -42,17 +42,26 @@ _DARKER = 0.75
 def draw(scene: Scene, *, edges: bool, path: Any, show: bool) -> Any:
     """Return a plotter with the scene, saved and shown where that is asked for."""
     with quietly_off_screen():
-        plotter = pyvista.Plotter(off_screen=not show, window_size=list(_WINDOW))
-        plotter.set_background("white")
-        surface = pyvista.PolyData(scene.points, _faces(scene.triangles))
-        _add_surface(plotter, scene, surface, edges)
-        _add_lines(plotter, scene)
-        _look(plotter, scene)
         if path is not None:
+            picture = _plotter(scene, edges, off_screen=True)
             with replaced(Path(os.fspath(path))) as temporary:
-                plotter.screenshot(str(temporary))
+                picture.screenshot(str(temporary))
+            if not show:
+                return picture
+            picture.close()
+        plotter = _plotter(scene, edges, off_screen=not show)
         if show:
             plotter.show(auto_close=False)
+    return plotter
+
+
+def _plotter(scene: Scene, edges: bool, *, off_screen: bool) -> Any:
+    plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(_WINDOW))
+    plotter.set_background("white")
+    surface = pyvista.PolyData(scene.points, _faces(scene.triangles))
+    _add_surface(plotter, scene, surface, edges)
+    _add_lines(plotter, scene)
+    _look(plotter, scene)
     return plotter
 
 
