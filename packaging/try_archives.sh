@@ -25,6 +25,15 @@ clean() { # clean FOLDER COMMAND...
     PIP_CACHE_DIR="$TRIED/pip" "${kept[@]}" "${@:2}")
 }
 
+try_wheel_with() { # try_wheel_with FOLDER WHEEL MAJOR.MINOR...: with the first of these that is there
+  local python
+  if python=$(find_python "${@:3}"); then
+    try_wheel "$2" "$python" "$1"
+  else
+    say "$(basename "$2") is not tried with Python ${*:3}, which is not there"
+  fi
+}
+
 try_wheel() { # try_wheel WHEEL PYTHON FOLDER
   local place=$TRIED/$3 python=$TRIED/$3/venv/bin/python started
   [ "$(stat -c %s "$1")" -lt "$LARGEST" ] || fail "$1 is larger than $LARGEST bytes"
@@ -47,13 +56,15 @@ try_wheel() { # try_wheel WHEEL PYTHON FOLDER
     fail "a module that only tests import is in $1"
 }
 
-# Where it may, in a network of its own that leads nowhere.
+# In a network of its own that leads nowhere, where that may be made.
 offline() {
   if unshare --net true 2>/dev/null; then
     unshare --net "$@"
   elif unshare --map-root-user --net true 2>/dev/null; then
     unshare --map-root-user --net "$@"
   else
+    say "WARNING: unshare may make no network here: what follows is tried with the network of this" \
+      "machine, and shows nothing of how it does without"
     "$@"
   fi
 }
@@ -61,26 +72,30 @@ offline() {
 # The core is the one that lies in build/, if the archive holds the very sources it was made of:
 # to compile it anew takes minutes.
 try_source_archive() { # try_source_archive ARCHIVE
-  local place=$TRIED/source core=(build/cp31?-*/libanistar_core.a)
+  local place=$TRIED/source core
+  core=$(<build/wheel/core)
   mkdir -p "$place/archive"
   tar --extract --gzip --file "$1" --directory "$place/archive" --strip-components 1
   diff --recursive --brief plugin/core "$place/archive/plugin/core"
   diff --recursive --brief CMakeLists.txt "$place/archive/CMakeLists.txt"
   offline .venv/bin/python -m pip wheel --quiet --disable-pip-version-check --no-index --no-deps \
     --no-build-isolation --wheel-dir "$place/made" \
-    --config-settings "cmake.define.ANISTAR_CORE_LIBRARY=$PWD/${core[0]}" "$PWD/$1"
+    --config-settings "cmake.define.ANISTAR_CORE_LIBRARY=$core" "$PWD/$1"
   try_wheel "$place"/made/*.whl .venv/bin/python source
 }
 
 rm -rf "$TRIED"
 mkdir -p "$TRIED"
+for tags in cp311-cp311 cp312-abi3; do
+  ls dist/*-"$tags"-*.whl >/dev/null 2>&1 || say "there is no wheel $tags to be tried: make wheel says why"
+done
 for wheel in "$PWD"/dist/*.whl; do
   case $wheel in
-    *-cp311-cp311-*) try_wheel "$wheel" "$(find_python 3.11)" 3.11 ;;
+    *-cp311-cp311-*) try_wheel_with 3.11 "$wheel" 3.11 ;;
     *-cp312-abi3-*)
-      try_wheel "$wheel" "$(find_python 3.12)" 3.12
+      try_wheel_with 3.12 "$wheel" 3.12
       # and with the newest there is, for which it was not compiled
-      if newest=$(find_python 3.14 3.13); then try_wheel "$wheel" "$newest" later; fi
+      try_wheel_with later "$wheel" 3.14 3.13
       ;;
     *) fail "$wheel is for no Python that was asked for" ;;
   esac

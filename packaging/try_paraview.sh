@@ -14,15 +14,18 @@ in_paraview() {
     pvbatch "$@"
 }
 
-wheel=(dist/*-cp311-cp311-*.whl)
-[ -f "${wheel[0]}" ] || {
-  printf 'paraview-test: make wheel has left no wheel for Python 3.11, which ParaView 5.11 runs\n' >&2
+fail() {
+  printf 'paraview-test: %s\n' "$*" >&2
   exit 1
 }
 
+wheel=(dist/*-cp311-cp311-*.whl)
+[ -f "${wheel[0]}" ] || fail "make wheel has left no wheel for Python 3.11, which ParaView 5.11 runs"
+python=$(find_python 3.11) || fail "Python 3.11, which ParaView 5.11 runs, is missing"
+
 rm -rf "$PLACE"
 mkdir -p "$PLACE"
-"$(find_python 3.11)" -m venv "$PLACE/with-anistar"
+"$python" -m venv "$PLACE/with-anistar"
 "$PLACE/with-anistar/bin/python" -m pip install --quiet --disable-pip-version-check \
   --constraint requirements/development.txt "${wheel[0]}"
 
