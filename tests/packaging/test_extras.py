@@ -73,6 +73,12 @@ def test_without_pip_the_command_goes_through_what_is_there(monkeypatch):
     )
 
 
+@pytest.mark.parametrize("executable", [None, ""])
+def test_where_no_python_is_known_the_command_names_the_one_on_the_path(monkeypatch, executable):
+    monkeypatch.setattr(sys, "executable", executable)
+    assert install_command("skfem").startswith("python -m pip install ")
+
+
 def test_an_unknown_extra_is_named_beside_the_known_ones():
     with pytest.raises(LookupError, match=r"no extra 'vkt'; known: .*\bvtk\b"):
         install_command("vkt")

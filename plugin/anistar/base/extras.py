@@ -54,7 +54,7 @@ def install_command(extra: str) -> str:
 
 def _installer() -> str:
     """Return how packages come into this environment; those that uv makes are without pip."""
-    python = _quoted(sys.executable)
+    python = _quoted(sys.executable or "python")  # a program that embeds Python may name none
     if importlib.util.find_spec("pip") is not None:
         return f"{python} -m pip install"
     if shutil.which("uv"):
