@@ -11,10 +11,6 @@ from meshes import cube, square
 import anistar
 from anistar import objects
 
-pytestmark = pytest.mark.skipif(
-    not hasattr(pyvista, "register_dataset_accessor"), reason="accessors came with PyVista 0.48"
-)
-
 
 def held_grid(mesh):
     u = np.tanh(8 * (mesh.points.sum(axis=1) - 1))

@@ -62,5 +62,6 @@ class DataSetAccessor:
         return transfer(self._dataset, fields, target, like="pyvista", **settings)
 
 
-if hasattr(pyvista, "register_dataset_accessor"):  # from 0.48 on
+# An older one than the extra asks for may be there, and goes without.
+if hasattr(pyvista, "register_dataset_accessor"):
     pyvista.register_dataset_accessor("anistar", pyvista.DataSet)(DataSetAccessor)
