@@ -173,10 +173,11 @@ def test_a_budget_that_ends_the_work_is_told(caplog):
     assert done.report.warnings[0].startswith("stopped by max_vertices")
 
 
-def test_a_surface_does_not_stand_for_a_volume():
+def test_a_volume_like_a_surface_keeps_its_cells():
     pyvista = pytest.importorskip("pyvista")
-    with pytest.raises(TypeError, match="like is a vtkPolyData, which holds no tetrahedra"):
-        anistar.objects.made(cube(), {}, pyvista.Sphere())
+    grid = anistar.objects.made(cube(), {}, pyvista.Sphere())
+    assert anistar.validate(grid, cube()) == []
+    assert anistar.objects.as_mesh(grid).n_cells == cube().n_cells
 
 
 def test_sizes_that_are_no_numbers_are_named():

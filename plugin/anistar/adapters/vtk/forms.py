@@ -39,8 +39,6 @@ def _make(mesh: Mesh, fields: Mapping[str, Any], like: Any) -> Any:
     grid = to_vtk(mesh, fields, dims=_dims(like) | {mesh.dim})
     if mesh.dim == 3 or not like.IsA("vtkPolyData"):
         return grid
-    if mesh.dim == 3:
-        raise TypeError("like is a vtkPolyData, which holds no tetrahedra: give like='pyvista'")
     surface = vtkGeometryFilter()
     surface.SetInputData(grid)
     surface.Update()
