@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import AnyArray
 from ..formats.content.assembly import assembled
-from ..formats.content.export import exported
+from ..formats.content.export import exported, rejoined
 from ..formats.content.raw import KIND_DIM, Block, RawMesh
 from ..formats.content.tag_arrays import FOREIGN_TAGS, TAGS, take_tags
 from ..meshes.fields import Field, as_fields
@@ -66,15 +66,30 @@ def to_meshio(
         needed = 3 if mesh.z else mesh.dim
         points = points[:, : max(needed, np.shape(like.points)[1])]
         key = next((name for name in (TAGS, *FOREIGN_TAGS) if name in like.cell_data), TAGS)
-    data = {name: [block.data[name] for block in blocks] for name in blocks[0].data}
+    point_data, data = raw.point_data, _by_name(blocks, {})
+    if like is not None:
+        point_data = rejoined(point_data, _widths(like.point_data.items()))
+        parts = ((name, arrays[0]) for name, arrays in like.cell_data.items() if arrays)
+        data = _by_name(blocks, _widths(parts))
     data[key] = [np.asarray(block.tags, np.int32) for block in blocks]
     return meshio.Mesh(
         points,
         [(block.kind, block.rows) for block in blocks],
-        point_data=raw.point_data,
+        point_data=point_data,
         cell_data=data,
         field_data={name: np.array([tag, dim]) for (dim, tag), name in raw.names.items()},
     )
+
+
+def _widths(arrays: Iterable[tuple[str, ArrayLike]]) -> dict[str, int]:
+    """Return the numbers of columns of arrays."""
+    return {name: int(np.prod(np.shape(values)[1:])) for name, values in arrays}
+
+
+def _by_name(blocks: list[Block], widths: Mapping[str, int]) -> dict[str, list[AnyArray]]:
+    """Return the data of all blocks by name."""
+    joined = [rejoined(block.data, widths) for block in blocks]
+    return {name: [data[name] for data in joined] for name in joined[0]}
 
 
 def _content(other: Any) -> Content:

@@ -9,11 +9,12 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
+from ...formats.content.export import rejoined
 from ...formats.content.raw import KIND_DIM
 from ...formats.vtk.cells import kind_of
 from ...meshes.mesh import Mesh
 from ...objects import Content, Form, register
-from .grids import as_grid, cell_types, from_vtk_with_report, to_vtk
+from .grids import add_arrays, arrays_of, as_grid, cell_types, from_vtk_with_report, to_vtk
 
 
 def _is_grid(obj: object) -> bool:
@@ -37,12 +38,24 @@ def _make(mesh: Mesh, fields: Mapping[str, Any], like: Any) -> Any:
     if like is None:
         return to_vtk(mesh, fields)
     grid = to_vtk(mesh, fields, dims=_dims(like) | {mesh.dim})
+    _rejoin(grid.GetPointData(), like.GetPointData())
+    _rejoin(grid.GetCellData(), like.GetCellData())
     if mesh.dim == 3 or not like.IsA("vtkPolyData"):
         return grid
     surface = vtkGeometryFilter()
     surface.SetInputData(grid)
     surface.Update()
     return surface.GetOutput()
+
+
+def _rejoin(data: Any, like: Any) -> None:
+    """Put the columns together that are one array of more components in the example."""
+    arrays = arrays_of(data)
+    widths = {name: values[:1].size for name, values in arrays_of(like).items()}
+    joined = rejoined(arrays, widths)
+    for name in arrays.keys() - joined.keys():
+        data.RemoveArray(name)
+    add_arrays(data, {name: joined[name] for name in joined.keys() - arrays.keys()})
 
 
 def _dims(data: Any) -> set[int]:

@@ -22,7 +22,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendFilter
 from ...base.arrays import AnyArray
 from ...formats.content.assembly import ReadReport, assembled
 from ...formats.content.export import exported
-from ...formats.content.raw import KIND_DIM, RawMesh
+from ...formats.content.raw import KIND_DIM, RawMesh, not_read
 from ...formats.content.tag_arrays import NAMES, TAGS, decoded_names, take_tags
 from ...formats.parsing.reading import reading
 from ...formats.vtk.cells import blocks_of, types_and_rows
@@ -68,13 +68,13 @@ def to_vtk(
         numpy_to_vtkIdTypeArray(connectivity, deep=True),
     )
     grid.SetCells(numpy_to_vtk(types, deep=True), cells)
-    _add(grid.GetPointData(), content.point_data)
+    add_arrays(grid.GetPointData(), content.point_data)
     cell_data = {name: np.concatenate([b.data[name] for b in blocks]) for name in blocks[0].data}
     tags = np.concatenate([np.asarray(b.tags, np.int32) for b in blocks])
-    _add(grid.GetCellData(), {TAGS: tags, **cell_data})
+    add_arrays(grid.GetCellData(), {TAGS: tags, **cell_data})
     entries = [[dim, tag, name] for (dim, tag), name in sorted(content.names.items())]
     encoded = np.frombuffer(json.dumps(entries).encode("ascii"), dtype=np.uint8)
-    _add(grid.GetFieldData(), {NAMES: encoded.copy()})
+    add_arrays(grid.GetFieldData(), {NAMES: encoded.copy()})
     return grid
 
 
@@ -145,31 +145,42 @@ def _content(grid: Any) -> RawMesh:
     n = grid.GetNumberOfPoints()
     points = vtk_to_numpy(grid.GetPoints().GetData()) if n else np.zeros((0, 3))
     raw = RawMesh(points.astype(np.float64, copy=False), [], six="vtk")
-    raw.point_data = _arrays(grid.GetPointData())
+    raw.point_data = arrays_of(grid.GetPointData())
+    skipped = [*_without_numbers(grid.GetPointData()), *_without_numbers(grid.GetCellData())]
+    raw.warnings += not_read(skipped, what="array", why="no field")
     if grid.GetNumberOfCells():
         raw.blocks = blocks_of(
             cell_types(grid),
             vtk_to_numpy(grid.GetCells().GetOffsetsArray())[1:],
             vtk_to_numpy(grid.GetCells().GetConnectivityArray()),
-            _arrays(grid.GetCellData()),
+            arrays_of(grid.GetCellData()),
         )
-    names = _arrays(grid.GetFieldData()).get(NAMES)
+    names = arrays_of(grid.GetFieldData()).get(NAMES)
     if names is not None:
         raw.names = decoded_names(names.tolist())
     return raw
 
 
-def _add(data: Any, arrays: Mapping[str, AnyArray]) -> None:
+def add_arrays(data: Any, arrays: Mapping[str, AnyArray]) -> None:
+    """Add arrays to the data of points, cells or a grid."""
     for name, values in arrays.items():
         array = numpy_to_vtk(np.ascontiguousarray(values))
         array.SetName(name)
         data.AddArray(array)
 
 
-def _arrays(data: Any) -> dict[str, AnyArray]:
+def arrays_of(data: Any) -> dict[str, AnyArray]:
+    """Return the arrays of numbers in the data of points, cells or a grid."""
     found = {}
     for i in range(data.GetNumberOfArrays()):
         array = data.GetArray(i)
         if array is not None and array.GetName():  # arrays of strings are no numbers
             found[array.GetName()] = vtk_to_numpy(array)
     return found
+
+
+def _without_numbers(data: Any) -> list[str]:
+    """Return the names of the arrays that are no fields, such as texts."""
+    arrays = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
+    names, numbers = [array.GetName() or "without a name" for array in arrays], arrays_of(data)
+    return [name for name in names if name not in numbers]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -100,7 +101,7 @@ def _assembled(raw: RawMesh, path: Path) -> tuple[Mesh, dict[str, Field], ReadRe
         **lower,
     )
     geometry, told = _geometry(mesh, found, used)
-    fields = _fields(raw, cells, used, dim)
+    fields = _fields(raw, cells, used, dim, notes)
     for text in [*notes, *told]:
         _log.warning("%s: %s", path, text)
     report = ReadReport(
@@ -184,21 +185,38 @@ def _require_used(name: str, rows: AnyArray, used: AnyArray) -> None:
         raise ValueError(f"{name} {at} has point {point}, which belongs to no cell")
 
 
-def _fields(raw: RawMesh, cells: Block, used: AnyArray, dim: int) -> dict[str, Field]:
+def _fields(
+    raw: RawMesh, cells: Block, used: AnyArray, dim: int, notes: list[str]
+) -> dict[str, Field]:
     fields: dict[str, Field] = {}
     for name, values in raw.point_data.items():
         if len(values) != len(used):
             raise ValueError(f"field {name!r} has {len(values)} values for {len(used)} points")
         kept = np.asarray(values) if used.all() else np.asarray(values)[used]
-        for part, array in _split(raw, name, kept, dim).items():
+        parts = _split(raw, name, kept, dim)
+        notes += _told_parts(name, parts, dim)
+        for part, array in parts.items():
             _add(fields, part, Field(array, "points", _kind(raw, name, array)))
     for name, values in cells.data.items():
         if len(values) != len(cells.rows):
             raise ValueError(f"field {name!r} has {len(values)} values for {len(cells.rows)} cells")
-        for part, array in _split(raw, name, np.asarray(values), dim).items():
+        parts = _split(raw, name, np.asarray(values), dim)
+        notes += _told_parts(name, parts, dim)
+        for part, array in parts.items():
             key = part if part not in fields else f"{part} (cells)"
             _add(fields, key, Field(array, "cells", _kind(raw, name, array)))
     return fields
+
+
+def _told_parts(name: str, parts: Mapping[str, AnyArray], dim: int) -> list[str]:
+    """Return a warning about an array that became several fields, none if it did not."""
+    if len(parts) <= 1:
+        return []
+    first, *_, last = parts
+    return [
+        f"field {name!r} of {len(parts)} components is no vector or tensor in {dim}D: read as "
+        f"{first!r} to {last!r}"
+    ]
 
 
 def _add(fields: dict[str, Field], name: str, field: Field) -> None:

@@ -40,6 +40,23 @@ def exported(mesh: Mesh, fields: Mapping[str, Field]) -> RawMesh:
     )
 
 
+def rejoined(arrays: Mapping[str, AnyArray], widths: Mapping[str, int]) -> dict[str, AnyArray]:
+    """Return arrays, those that were split into columns on reading as one again.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array
+    widths : mapping of str to int
+        How many columns the arrays had in the object that was read.
+    """
+    joined = dict(arrays)
+    for name, width in widths.items():
+        parts = [f"{name}_{k}" for k in range(width)]
+        if width > 1 and name not in joined and joined.keys() >= set(parts):
+            joined[name] = np.column_stack([joined.pop(part) for part in parts])
+    return joined
+
+
 def in_space(mesh: Mesh) -> Floats:
     """Return the points of a mesh with three coordinates."""
     points = _in_space(mesh.points)
