@@ -2,11 +2,12 @@
 
 from contextlib import suppress
 
+import meshio
 import numpy as np
 import pytest
 from meshes import two_region_cube, two_regions
 
-from anistar import Field, Mesh, formats
+from anistar import Field, Mesh, formats, objects
 from anistar.base.errors import FormatError
 from anistar.meshes.validation import validate
 
@@ -78,6 +79,27 @@ def test_tags_come_back_by_their_number_where_they_have_no_name(tmp_path):
     assert np.array_equal(got.facet_tags[others], mesh.facet_tags[others])
     assert fields["k"].values.tolist() == list(range(8))
     assert validate(got) == []
+
+
+@pytest.mark.parametrize("make", [two_regions, two_region_cube])
+def test_groups_that_meshio_has_read_are_tags_with_names(tmp_path, make, caplog):
+    mesh = Mesh(**make().arrays() | {"corners": []})
+    formats.write(tmp_path / "m.med", mesh)
+    other = meshio.read(tmp_path / "m.med")
+    other.point_tags, other.point_data["point_tags"] = {3: ["probe"]}, np.zeros(mesh.n_points)
+    got, fields = objects.opened(other)[:2]
+    assert fields == {}
+    assert "no place and not read: the group of points probe" in caplog.text
+    wanted = formats.read(tmp_path / "m.med")[0]
+    assert got.names == wanted.names
+    assert set(got.names.values()) == set(mesh.names.values())
+    assert np.array_equal(got.cell_tags, wanted.cell_tags)
+    assert np.array_equal(got.facet_tags, wanted.facet_tags)
+    objects.made(got, {}, other).write(tmp_path / "again.med")
+    again = formats.read(tmp_path / "again.med")[0]
+    assert again.names == got.names
+    assert np.array_equal(again.cell_tags, got.cell_tags)
+    assert validate(again, got) == []
 
 
 def test_a_med_file_that_is_cut_or_damaged_is_refused(tmp_path):

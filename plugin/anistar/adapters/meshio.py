@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,10 @@ from numpy.typing import ArrayLike
 from ..base.arrays import AnyArray
 from ..formats.content.assembly import assembled
 from ..formats.content.export import exported, rejoined
-from ..formats.content.raw import KIND_DIM, Block, RawMesh
+from ..formats.content.raw import KIND_DIM, Block, RawMesh, not_read
 from ..formats.content.tag_arrays import FOREIGN_TAGS, TAGS, take_tags
+from ..formats.med_reader import numbered_groups, tags_of_families
+from ..formats.meshio_writer import FAMILIES, families_of
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
 from ..objects import Content, Form, register
@@ -26,7 +29,8 @@ def from_meshio(other: Any) -> tuple[Mesh, dict[str, Field]]:
     """Return the mesh and fields of a `meshio.Mesh`.
 
     Tags are looked for in the cell data ``medit:ref``, ``gmsh:physical`` and ``cell_tags``, their
-    names in ``field_data``; without such data each cell set becomes a tag with its name.
+    names in ``field_data``; without such data each cell set becomes a tag with its name. In a mesh
+    of a MED file the groups are tags, as `anistar.read` takes them.
 
     Raises
     ------
@@ -72,13 +76,16 @@ def to_meshio(
         parts = ((name, arrays[0]) for name, arrays in like.cell_data.items() if arrays)
         data = _by_name(blocks, _widths(parts))
     data[key] = [np.asarray(block.tags, np.int32) for block in blocks]
-    return meshio.Mesh(
+    made = meshio.Mesh(
         points,
         [(block.kind, block.rows) for block in blocks],
         point_data=point_data,
         cell_data=data,
         field_data={name: np.array([tag, dim]) for (dim, tag), name in raw.names.items()},
     )
+    if key == FAMILIES and _groups(like):
+        made.cell_tags, made.cell_data[key] = families_of(replace(raw, blocks=blocks))
+    return made
 
 
 def _widths(arrays: Iterable[tuple[str, ArrayLike]]) -> dict[str, int]:
@@ -94,6 +101,11 @@ def _by_name(blocks: list[Block], widths: Mapping[str, int]) -> dict[str, list[A
 
 def _content(other: Any) -> Content:
     raw = _raw(other)
+    _take_groups(raw, _groups(other))
+    if of_points := getattr(other, "point_tags", None):  # of MED too
+        raw.point_data.pop("point_tags", None)
+        names = sorted({name for names in of_points.values() for name in names})
+        raw.warnings += not_read(names, what="group of points", why="no place")
     take_tags(raw)
     if all(block.tags is None for block in raw.blocks):
         _tag_by_sets(raw, other.cell_sets)
@@ -120,6 +132,27 @@ def _raw(other: Any) -> RawMesh:
         if np.shape(entry) == (2,) and 0 <= int(entry[1]) <= 3
     }
     return raw
+
+
+def _groups(other: Any) -> dict[int, list[str]]:
+    """Return the groups of each family of elements, where the mesh was read from MED."""
+    return dict(getattr(other, "cell_tags", None) or {})
+
+
+def _take_groups(raw: RawMesh, groups: dict[int, list[str]]) -> None:
+    """Make tags with names of the families of a mesh that meshio read from MED."""
+    if not groups or not all(FAMILIES in block.data for block in raw.blocks):
+        return
+    n_several = 0
+    for block in raw.blocks:
+        block.tags, several = tags_of_families(block.data.pop(FAMILIES), groups)
+        n_several += several
+        used = set(block.tags.tolist())
+        tags = numbered_groups(groups).items()
+        dim = KIND_DIM.get(block.kind, 0)
+        raw.names |= {(dim, tag): name for name, tag in tags if tag in used}
+    if n_several:
+        raw.warnings.append(f"{n_several} element(s) are in several groups, the first is kept")
 
 
 def _rows(values: ArrayLike) -> AnyArray:

@@ -101,12 +101,14 @@ def _mesh(content: _Content, n_coordinates: int) -> RawMesh:
         if name not in _NAMES:
             continue
         block, families = _block(content, name, raw.points)
-        tags, several = _tags(families, groups)
+        tags, several = tags_of_families(families, groups)
         block.tags = tags
         n_several += several
         dim = KINDS[block.kind].dim
         used = np.unique(tags).tolist()
-        raw.names |= {(dim, tag): group for group, tag in _numbered(groups).items() if tag in used}
+        raw.names |= {
+            (dim, tag): group for group, tag in numbered_groups(groups).items() if tag in used
+        }
         raw.blocks.append(block)
     if n_several:
         raw.warnings.append(f"{n_several} element(s) are in several groups, the first is kept")
@@ -155,7 +157,7 @@ def _groups(content: _Content) -> dict[int, list[str]]:
     return found
 
 
-def _numbered(groups: dict[int, list[str]]) -> dict[str, int]:
+def numbered_groups(groups: dict[int, list[str]]) -> dict[str, int]:
     """Return the tag of each group that is the first of a family: the smallest family's number."""
     tags: dict[str, int] = {}
     for number, names in groups.items():
@@ -164,9 +166,9 @@ def _numbered(groups: dict[int, list[str]]) -> dict[str, int]:
     return tags
 
 
-def _tags(families: AnyArray, groups: dict[int, list[str]]) -> tuple[AnyArray, int]:
+def tags_of_families(families: AnyArray, groups: dict[int, list[str]]) -> tuple[AnyArray, int]:
     """Return the tag of each element, and how many are in several groups."""
-    tag_of, tags, n_several = _numbered(groups), np.abs(families), 0
+    tag_of, tags, n_several = numbered_groups(groups), np.abs(families), 0
     for number, names in groups.items():
         members = families == number
         if names:

@@ -32,8 +32,8 @@ _CELLS_ALONE = (".dat", ".f3grid", ".hmf", ".obj", ".tec", ".xml")
 # meshio writes numbers there as `np.int64(4)`, which nothing can read.
 _DAMAGED = (".ugrid",)
 _DAMAGED_DATA = (".xml",)
-# Under which meshio looks for the families of MED.
-_FAMILIES = "cell_tags"
+#: Under which meshio has the families of MED.
+FAMILIES = "cell_tags"
 
 
 def is_known(suffix: str) -> bool:
@@ -112,13 +112,13 @@ def _write_med(temporary: Path, mesh: Any, content: RawMesh) -> None:
     import meshio
 
     h5py = library()
-    mesh.cell_tags, families = _families(content)
+    mesh.cell_tags, families = families_of(content)
     del mesh.cell_data[TAGS]
     for name, arrays in mesh.cell_data.items():
         mesh.cell_data[name] = [values.astype(np.float64) for values in arrays]
     for name, values in mesh.point_data.items():
         mesh.point_data[name] = values.astype(np.float64)
-    mesh.cell_data[_FAMILIES] = families
+    mesh.cell_data[FAMILIES] = families
     meshio.write(temporary, mesh, file_format="med")
     with h5py.File(temporary, "a") as file:  # meshio spells letters beyond ASCII wrongly
         for family in file["FAS/mesh"].get("ELEME", {}).values():
@@ -130,7 +130,7 @@ def _write_med(temporary: Path, mesh: Any, content: RawMesh) -> None:
             family["GRO/NOM"][0] = np.frombuffer(padded, np.int8)
 
 
-def _families(content: RawMesh) -> tuple[dict[int, list[str]], list[AnyArray]]:
+def families_of(content: RawMesh) -> tuple[dict[int, list[str]], list[AnyArray]]:
     """Return the groups of each family of MED, and the families of the elements of each block.
 
     A family has the number of its tag with the sign turned, where no other one has that.
