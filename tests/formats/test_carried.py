@@ -250,3 +250,21 @@ def test_writing_warns_of_what_is_lost(tmp_path, caplog):
     formats.write(tmp_path / "m.meshb", mesh)
     assert "this format does not carry the height z = 0.3" in caplog.text
     assert "does not carry the names of facets" in caplog.text
+
+
+def test_markers_of_su2_get_names_without_blanks(tmp_path, caplog):
+    mesh, _ = rich(2)
+    names = {**mesh.names, (1, int(mesh.facet_tags[0])): "hole big"}
+    mesh = Mesh(**{**mesh.arrays(), "names": names})
+    path = tmp_path / "m.su2"
+    told = "blanks in the names of facets: 'hole big' becomes 'hole_big'"
+    assert told in losses(mesh, {}, path)
+    formats.write(path, mesh)
+    assert told in caplog.text
+    again, _ = formats.read(path)
+    assert validate(again) == []
+    assert len(again.facets_of("hole_big")) == len(mesh.facets_of("hole big"))
+    first, second = np.unique(mesh.facet_tags)[:2].tolist()
+    clash = {(1, first): "a b", (1, second): "a_b"}
+    with pytest.raises(FormatError, match="two markers of SU2 would be called 'a_b'"):
+        formats.write(path, Mesh(**{**mesh.arrays(), "names": clash}))

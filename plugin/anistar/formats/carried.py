@@ -10,6 +10,7 @@ import numpy as np
 
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
+from .su2_writer import marker_of
 from .suffixes import suffix_of
 
 #: Whole numbers up to here are doubles too.
@@ -152,6 +153,8 @@ def losses(mesh: Mesh, fields: Mapping[str, Field], path: str | os.PathLike[str]
     for name in missing:
         if not set(_WITHIN.get(name, ())) & set(missing):
             lost += [text] if (text := ASPECTS[name](mesh, rest)) else []
+    if suffix == ".su2":
+        lost += [text] if (text := _blanks_in_markers(mesh)) else []
     if suffix not in _SOLUTIONS and suffix not in CARRIED and lost:
         lost[-1] += "; meshio writes this format, which may keep some of it"
     return lost
@@ -180,6 +183,15 @@ def holdable(
         if len(set(joined)) == len(kept):  # else it is for the writer to refuse
             return dict(zip(joined, kept.values(), strict=True))
     return kept
+
+
+def _blanks_in_markers(mesh: Mesh) -> str:
+    renamed = [
+        f"{name!r} becomes {marker_of(name)!r}"
+        for (dim, _), name in mesh.names.items()
+        if dim == mesh.dim - 1 and marker_of(name) != name
+    ]
+    return f"blanks in the names of facets: {_listed(renamed)}" if renamed else ""
 
 
 def _listed(things: Iterable[object], most: int = 5) -> str:

@@ -28,7 +28,7 @@ def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
     Raises
     ------
     FormatError
-        If there are fields, or a name has spaces, which the format cannot hold.
+        If there are fields, or two markers would have one name: theirs have no blanks.
     """
     if fields:
         raise FormatError(f"cannot write {path}: SU2 meshes hold no fields")
@@ -36,15 +36,20 @@ def write(path: Path, mesh: Mesh, fields: Mapping[str, Field]) -> None:
     parts += [f"NPOIN= {mesh.n_points}\n", printed(mesh.points, np.arange(mesh.n_points))]
     tags = np.unique(mesh.facet_tags)
     parts.append(f"NMARK= {len(tags)}\n")
-    for tag in map(int, tags):
-        name = mesh.names.get((mesh.dim - 1, tag), str(tag))
-        if name.split() != [name]:
-            raise FormatError(f"cannot write {path}: a marker of SU2 has no spaces, {name!r} has")
+    markers = {int(tag): marker_of(mesh.names.get((mesh.dim - 1, tag), str(tag))) for tag in tags}
+    for tag, name in markers.items():
+        if list(markers.values()).count(name) > 1:
+            raise FormatError(f"cannot write {path}: two markers of SU2 would be called {name!r}")
         members = mesh.facets[mesh.facet_tags == tag]
         parts.append(f"MARKER_TAG= {name}\nMARKER_ELEMS= {len(members)}\n")
         parts.append(_rows(mesh.dim - 1, members))
     with replaced(path) as temporary:
         temporary.write_text("".join(parts), encoding="utf-8")
+
+
+def marker_of(name: str) -> str:
+    """Return a name as that of a marker, which has no blanks."""
+    return "_".join(name.split()) or "_"
 
 
 def _rows(dim: int, rows: Ints) -> str:
