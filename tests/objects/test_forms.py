@@ -176,11 +176,13 @@ def test_dolfinx_functions_are_read_at_the_points():
     assert np.array_equal(done.mesh.points, direct.mesh.points)
 
 
-def test_a_planar_polydata_comes_back_as_one():
+def test_a_planar_polydata_comes_back_as_one(caplog):
     plane = pyvista.Plane(i_resolution=8, j_resolution=8).triangulate()
     plane["u"] = np.tanh(9 * plane.points[:, 0])
     made = anistar.adapt(plane, "u", target_complexity=100, like=plane)
     assert isinstance(made, pyvista.PolyData)
+    assert anistar.adapt(plane, target_complexity=50).report.metric_fields == ("u",)
+    assert "how a surface looks and not read: the array Normals, TextureCoordinates" in caplog.text
     assert made.is_all_triangles
     assert np.isclose(made.area, 1.0)
     assert made.n_points == len(made["u"])

@@ -128,7 +128,7 @@ def one_line(error: BaseException) -> str:
     text = str(error) or type(error).__name__
     if isinstance(error, OSError) and error.strerror and error.filename:
         text = f"{error.filename}: {error.strerror}"
-    return " ".join(" ".join([text, *getattr(error, "__notes__", [])]).split())
+    return " ".join("; ".join([text, *getattr(error, "__notes__", [])]).split())
 
 
 def exit_code(error: BaseException) -> int:

@@ -122,6 +122,9 @@ def from_vtk_with_report(grid: Any) -> tuple[Mesh, dict[str, Field], ReadReport]
     name = Path(grid.GetClassName())
     with reading(name):
         raw = _content(as_grid(grid))
+        looks = _of_looks(grid)
+        raw.point_data = {n: values for n, values in raw.point_data.items() if n not in looks}
+        raw.warnings += not_read(sorted(looks), what="array", why="how a surface looks")
         take_tags(raw)
     return assembled(raw, name)
 
@@ -177,6 +180,12 @@ def arrays_of(data: Any) -> dict[str, AnyArray]:
         if array is not None and array.GetName():  # arrays of strings are no numbers
             found[array.GetName()] = vtk_to_numpy(array)
     return found
+
+
+def _of_looks(grid: Any) -> set[str]:
+    """Return the names of the normals and texture coordinates, which the new mesh has others of."""
+    data = grid.GetPointData()
+    return {array.GetName() for array in (data.GetNormals(), data.GetTCoords()) if array}
 
 
 def _without_numbers(data: Any) -> list[str]:

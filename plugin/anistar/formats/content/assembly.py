@@ -182,7 +182,11 @@ def _require_used(name: str, rows: AnyArray, used: AnyArray) -> None:
     if bad.any():
         at = int(np.argmax(bad))
         point = rows[at][~used[rows[at]]][0]
-        raise ValueError(f"{name} {at} has point {point}, which belongs to no cell")
+        what = {"facet": "facets of its cells", "edge": "ridges of its facets"}[name]
+        raise ValueError(
+            f"{name} {at} has point {point}, which belongs to no cell: elements of fewer "
+            f"dimensions than the cells are {what}, and nothing else"
+        )
 
 
 def _fields(
