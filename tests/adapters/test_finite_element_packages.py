@@ -89,6 +89,26 @@ class TestSkfem:
         M = metric_at(mesh).reshape(mesh.n_points, -1)
         assert np.array_equal(self.adapter.point_values(nine, self.adapter.to_unknowns(nine, M)), M)
 
+    @pytest.mark.parametrize("name", ["MeshQuad1", "MeshQuad2", "MeshHex1"])
+    def test_quadrilaterals_and_hexahedra_are_split_with_their_names(self, name, caplog):
+        import skfem
+
+        plain = skfem.MeshQuad().refined(2) if "Quad" in name else skfem.MeshHex().refined(1)
+        mesh = getattr(skfem, name).from_mesh(plain)
+        mesh = mesh.with_boundaries({"left": lambda x: x[0] == 0})
+        mesh = mesh.with_subdomains({"low": lambda x: x[1] < 0.5})
+        got = self.adapter.from_skfem(mesh)
+        dim = mesh.dim()
+        assert "split into" in caplog.text
+        assert ("taken as straight" in caplog.text) == (name == "MeshQuad2")
+        assert np.array_equal(got.points, plain.p.T)
+        assert got.n_cells == (2 if dim == 2 else 6) * mesh.nelements
+        assert sorted(got.names.values()) == ["left", "low"]
+        assert (got.points[got.facets[got.facet_tags == 1]][..., 0] == 0).all()
+        assert (got.facet_tags == 1).sum() == (1 if dim == 2 else 2) * len(mesh.boundaries["left"])
+        assert (got.cell_tags == 1).sum() == got.n_cells // 2
+        assert anistar.validate(got) == []
+
     def test_the_vertices_of_quadratic_solutions_are_found(self):
         import skfem
 
@@ -329,10 +349,27 @@ class TestMfem:
         with pytest.raises(ValueError, match=r"values of shape \(8,\), not \(9,\)"):
             self.adapter.to_function(space, np.zeros(8))
 
-    def test_other_cells_and_objects_are_refused(self):
+    @pytest.mark.parametrize(
+        ("kind", "per_cell"),
+        [("QUADRILATERAL", 2), ("HEXAHEDRON", 6), ("WEDGE", 3), ("PYRAMID", 2)],
+    )
+    def test_other_cells_are_split(self, kind, per_cell, caplog):
         mfem = self.adapter.mfem
-        quads = mfem.Mesh.MakeCartesian2D(2, 2, mfem.Element.QUADRILATERAL)
-        with pytest.raises(TypeError, match="element 0 is no triangle"):
-            self.adapter.from_mfem(quads)
+        make = mfem.Mesh.MakeCartesian2D if kind == "QUADRILATERAL" else mfem.Mesh.MakeCartesian3D
+        dim = 2 if kind == "QUADRILATERAL" else 3
+        given = make(*[2] * dim, getattr(mfem.Element, kind))
+        got = self.adapter.from_mfem(given)
+        assert "split into" in caplog.text
+        assert got.n_cells == per_cell * given.GetNE()
+        assert np.array_equal(got.points, np.array(given.GetVertexArray()))
+        assert set(got.facet_tags.tolist()) == set(given.GetBdrAttributeArray())
+        assert anistar.validate(got) == []
+
+    def test_curved_meshes_and_other_objects_are_refused(self):
+        mfem = self.adapter.mfem
+        surface = mfem.Mesh.MakeCartesian2D(2, 2, mfem.Element.QUADRILATERAL)
+        surface.SetCurvature(2)
+        with pytest.raises(TypeError, match="the mesh must be straight"):
+            self.adapter.from_mfem(surface)
         with pytest.raises(TypeError, match=r"mfem\.Mesh is needed, not int"):
             self.adapter.from_mfem(3)

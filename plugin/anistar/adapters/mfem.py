@@ -7,6 +7,7 @@ for edges in space nor for vertices.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats, Ints
 from ..base.extras import install_command
+from ..formats.content.assembly import assembled
+from ..formats.content.raw import Block, RawMesh
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_determinants
 from ..objects import Content, Form, register
@@ -25,6 +28,15 @@ except ImportError as error:
     raise
 
 _TRIANGLE, _TETRAHEDRON = 2, 4  # mfem::Element::Type
+_KINDS = {
+    1: "line",
+    2: "triangle",
+    3: "quad",
+    4: "tetra",
+    5: "hexahedron",
+    6: "wedge",
+    7: "pyramid",
+}
 _BY_NODES = 0  # mfem::Ordering::byNODES
 
 
@@ -70,15 +82,18 @@ def to_mfem(mesh: Mesh) -> Any:
 
 
 def from_mfem(other: Any) -> Mesh:
-    """Return an `mfem.Mesh` of straight triangles or tetrahedra as a `Mesh`.
+    """Return a straight `mfem.Mesh` as a `Mesh`.
 
-    Attributes of elements and boundary elements become tags, called by the first attribute set, in
-    alphabetical order, that holds nothing else.
+    Other cells than triangles and tetrahedra are split, with a logged warning. Attributes of
+    elements and boundary elements become tags, called by the first attribute set, in alphabetical
+    order, that holds nothing else.
 
     Raises
     ------
     TypeError
-        If it is another object, curved, or has other cells.
+        If it is another object, or curved.
+    ValueError
+        If cells are so twisted that they cannot be split.
     """
     if not isinstance(other, mfem.Mesh):
         raise TypeError(f"an mfem.Mesh is needed, not {type(other).__name__}")
@@ -86,9 +101,8 @@ def from_mfem(other: Any) -> Mesh:
     wanted = {2: _TRIANGLE, 3: _TETRAHEDRON}.get(dim)
     if other.GetNodes() is not None or other.SpaceDimension() != dim:
         raise TypeError("the mesh must be straight and fill the space")
-    strange = [i for i in range(other.GetNE()) if other.GetElementType(i) != wanted]
-    if strange:
-        raise TypeError(f"element {strange[0]} is no triangle (2D) or tetrahedron (3D)")
+    if any(other.GetElementType(i) != wanted for i in range(other.GetNE())):
+        return _split_up(other)
     points = np.array(other.GetVertexArray())[:, :dim]
     cells = np.array([other.GetElementVertices(i) for i in range(other.GetNE())], np.int32)
     facets = [other.GetBdrElementVertices(i) for i in range(other.GetNBE())]
@@ -102,6 +116,39 @@ def from_mfem(other: Any) -> Mesh:
         facet_tags=np.array(other.GetBdrAttributeArray(), np.int32),
         names={**_names(other.bdr_attribute_sets, dim - 1), **_names(other.attribute_sets, dim)},
     )
+
+
+def _split_up(other: Any) -> Mesh:
+    """Return a mesh of any cells as triangles or tetrahedra."""
+    dim = other.Dimension()
+    cells = range(other.GetNE())
+    sides = range(other.GetNBE())
+    raw = RawMesh(
+        np.array(other.GetVertexArray(), np.float64)[:, :dim],
+        [
+            *_blocks(
+                [other.GetElementType(i) for i in cells],
+                [other.GetElementVertices(i) for i in cells],
+                np.array(other.GetAttributeArray()),
+            ),
+            *_blocks(
+                [other.GetBdrElementType(i) for i in sides],
+                [other.GetBdrElementVertices(i) for i in sides],
+                np.array(other.GetBdrAttributeArray()),
+            ),
+        ],
+        names={**_names(other.bdr_attribute_sets, dim - 1), **_names(other.attribute_sets, dim)},
+    )
+    return assembled(raw, Path("mfem.Mesh"))[0]
+
+
+def _blocks(types: list[int], rows: list[list[int]], tags: Ints) -> list[Block]:
+    """Return elements by their types, which have the corners in the order of VTK."""
+    members = {number: np.flatnonzero(np.equal(types, number)) for number in dict.fromkeys(types)}
+    return [
+        Block(_KINDS[number], np.array([rows[i] for i in found], np.int64), tags[found])
+        for number, found in members.items()
+    ]
 
 
 def point_values(function: Any) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,17 +10,25 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, Ints, Longs
 from ..base.extras import install_command
+from ..formats.content.assembly import assembled
+from ..formats.content.raw import Block, RawMesh
 from ..formats.content.second_order import geometry_through
 from ..meshes.mesh import Mesh
 from ..meshes.topology import RowKeys, cell_determinants
 from ..objects import Content, Form, register
 
 try:
-    from skfem import MeshTet, MeshTet2, MeshTri, MeshTri2
+    from skfem import MeshHex, MeshQuad, MeshTet, MeshTet2, MeshTri, MeshTri2
     from skfem.mesh import Mesh as SkfemMesh
 except ImportError as error:
     error.add_note(f"anistar's scikit-fem adapter needs it: {install_command('skfem')}")
     raise
+
+# The kinds of cells and facets that are split, and where the corners are in scikit-fem's rows.
+_SPLIT = {
+    MeshQuad: ("quad", "line", [0, 1, 2, 3]),
+    MeshHex: ("hexahedron", "quad", [0, 3, 6, 2, 1, 5, 7, 4]),
+}
 
 
 def to_skfem(mesh: Mesh) -> Any:
@@ -55,18 +64,24 @@ def to_skfem(mesh: Mesh) -> Any:
 def from_skfem(other: Any) -> Mesh:
     """Return a `skfem.MeshTri` or `skfem.MeshTet` as a `Mesh`.
 
-    Of meshes of second order these are the corners, see `curves_of` for their edges. Boundaries
-    and subdomains become tags 1, 2, ... in the order of their names, with these names.
+    A `MeshQuad` or `MeshHex` is split, with a logged warning. Of meshes of second order these are
+    the corners, see `curves_of` for their edges. Boundaries and subdomains become tags 1, 2, ...
+    in the order of their names, with these names.
 
     Raises
     ------
     TypeError
         If the mesh is of another type.
     ValueError
-        If boundaries or subdomains overlap, which one tag for each facet or cell cannot say.
+        If boundaries or subdomains overlap, which one tag for each facet or cell cannot say; or
+        cells are so twisted that they cannot be split.
     """
+    if isinstance(other, MeshQuad | MeshHex):
+        return _split_up(other)
     if not isinstance(other, MeshTri | MeshTet) or other.t.shape[0] != other.p.shape[0] + 1:
-        raise TypeError(f"only MeshTri and MeshTet are supported, not {type(other).__name__}")
+        raise TypeError(
+            f"only MeshTri, MeshTet, MeshQuad and MeshHex are supported, not {type(other).__name__}"
+        )
     points, cells = np.asarray(other.p.T)[: other.nvertices], np.array(other.t.T)
     dim = points.shape[1]
     inverted = cell_determinants(points, cells) < 0
@@ -81,6 +96,26 @@ def from_skfem(other: Any) -> Mesh:
         facet_tags=facet_tags[chosen],
         names={**names, **regions},
     )
+
+
+def _split_up(other: Any) -> Mesh:
+    """Return quadrilaterals or hexahedra as triangles or tetrahedra."""
+    rows = next(rows for base, rows in _SPLIT.items() if isinstance(other, base))
+    kind, facet_kind, corners = rows
+    dim = other.p.shape[0]
+    chosen, facet_tags, names = _tagged(other.boundaries, other.facets.shape[1], dim - 1)
+    _, cell_tags, regions = _tagged(other.subdomains, other.t.shape[1], dim)
+    raw = RawMesh(
+        np.ascontiguousarray(other.p.T[: other.nvertices], np.float64),
+        [
+            Block(kind, np.asarray(other.t.T[:, corners], np.int64), cell_tags),
+            Block(facet_kind, np.asarray(other.facets.T[chosen], np.int64), facet_tags[chosen]),
+        ],
+        names={**names, **regions},
+    )
+    if other.p.shape[1] > other.nvertices:
+        raw.warnings.append("cells of second order: their edges are taken as straight")
+    return assembled(raw, Path(f"skfem.{type(other).__name__}"))[0]
 
 
 def curves_of(other: Any, mesh: Mesh) -> Mesh | None:
