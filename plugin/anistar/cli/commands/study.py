@@ -8,7 +8,7 @@ import tempfile
 from typing import Any
 
 from ...loops.loop import Solve
-from ...loops.study import BASELINES, convergence_study
+from ...loops.study import BASELINES, Study, convergence_study
 from ...meshes.mesh import Mesh
 from ...runs.file_solver import FileSolver
 from .. import console
@@ -91,7 +91,12 @@ def run(arguments: argparse.Namespace) -> int:
         study.write_picture(arguments.picture)
     if arguments.json:
         console.show_json(study)
-        return 0
+    else:
+        _show(study)
+    return 0
+
+
+def _show(study: Study) -> None:
     tables = {**study.baselines, "adapted": study.table}
     rows = [
         [kind, r.complexity, r.points, r.cells, r.error, r.order]
@@ -100,4 +105,3 @@ def run(arguments: argparse.Namespace) -> int:
     ]
     columns = ["meshes", "complexity", "points", "cells", "L2 error", "order"]
     console.show_table(f"order {study.order:.2f}", columns, rows)
-    return 0
