@@ -121,6 +121,7 @@ def test_overlapping_boundaries_cannot_be_tags():
         from_skfem(other)
 
 
-def test_quadrilaterals_are_refused():
-    with pytest.raises(TypeError, match="only MeshTri and MeshTet are supported, not MeshQuad"):
-        from_skfem(skfem.MeshQuad())
+def test_quadrilaterals_are_split():
+    mesh = from_skfem(skfem.MeshQuad())
+    assert validate(mesh) == []
+    assert (mesh.n_points, mesh.n_cells) == (4, 2)

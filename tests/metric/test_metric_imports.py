@@ -6,7 +6,7 @@ import anistar.metric
 ALLOWED = {"numpy", "scipy"}
 STANDARD = {
     "__future__", "collections", "dataclasses", "difflib", "functools", "html", "importlib",
-    "itertools", "logging", "math", "typing",
+    "itertools", "logging", "math", "operator", "typing",
 }  # fmt: skip
 
 

@@ -46,7 +46,7 @@ def test_a_metric_that_is_not_symmetric_is_named():
     ("M", "message"),
     [
         (uniform(square(3), 0.3), "16 tensors but the mesh has 25 points"),
-        (np.ones(25), "must have shape"),
+        (np.ones((25, 2)), "must have shape"),
         (np.broadcast_to(np.eye(3), (25, 3, 3)), "3-dimensional but the mesh has dim 2"),
     ],
 )

@@ -138,7 +138,7 @@ def test_a_tensor_that_is_no_metric_is_named(call, tensor, message):
     [
         (np.tile(np.eye(3), (3, 1, 1)), "3 tensors but the mesh has 4 points"),
         (np.tile(np.eye(2), (4, 1, 1)), "2-dimensional but the mesh has dim 3"),
-        (np.ones(4), "must have shape"),
+        (np.ones((4, 2)), "must have shape"),
     ],
 )
 def test_a_metric_of_the_wrong_shape_is_refused(M, message):

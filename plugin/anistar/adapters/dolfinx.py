@@ -208,7 +208,7 @@ def _numbers(domain: Any) -> Ints:
     given = np.asarray(domain.geometry.input_global_indices)
     corners = np.unique(_corner_nodes(domain))
     numbers = np.full(len(given), -1, np.int32)
-    numbers[corners[np.argsort(given[corners])]] = np.arange(len(corners))
+    numbers[corners[np.argsort(given[corners], kind="stable")]] = np.arange(len(corners))
     return numbers
 
 
