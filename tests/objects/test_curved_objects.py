@@ -35,7 +35,43 @@ def dolfinx_of(mesh):
     return adapter.dolfinx.mesh.create_mesh(adapter.MPI.COMM_SELF, cells, element, points)
 
 
+def mfem_of(mesh):
+    """The same for MFEM: nodes of its own are put where those of scikit-fem are."""
+    linear = (skfem.MeshTri if mesh.p.shape[0] == 2 else skfem.MeshTet)(
+        np.ascontiguousarray(mesh.p[:, : mesh.nvertices]), mesh.t
+    )
+    other = objects.made(objects.as_mesh(linear), {}, "mfem")
+    other.SetCurvature(2)
+    dim = other.Dimension()
+    nodes = other.GetNodes()
+    straight = np.array(nodes.GetDataArray()).reshape(-1, dim)  # point by point
+    curved = straight.copy()
+    ends = mesh.doflocs.T[mesh.dofs.element_dofs.T]
+    pairs = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)][: ends.shape[1] - dim - 1]
+    for i, (a, b) in enumerate(pairs):
+        middle = (ends[:, a] + ends[:, b]) / 2
+        near = np.linalg.norm(straight[:, None] - middle[None], axis=2).argmin(axis=0)
+        curved[near] = ends[:, dim + 1 + i]
+    nodes.GetDataArray()[:] = curved.ravel()
+    return other
+
+
+def netgen_disc():
+    """A circle of Netgen's elements of second order, whose middles are on the geometry."""
+    import ngsolve
+    from netgen.geom2d import SplineGeometry
+
+    geometry = SplineGeometry()
+    geometry.AddCircle((0, 0), 1, bc="rim")
+    made = geometry.GenerateMesh(maxh=0.45)
+    made.SecondOrder()
+    return ngsolve.Mesh(made)
+
+
 CURVED = {
+    "mfem-2d": (lambda: mfem_of(skfem_disc()), 0.02),
+    "mfem-3d": (lambda: mfem_of(skfem_ball()), 0.05),
+    "netgen-2d": (netgen_disc, 0.05),
     "skfem-2d": (skfem_disc, 0.02),
     "skfem-3d": (skfem_ball, 0.05),
     "dolfinx-2d": (lambda: dolfinx_of(skfem_disc()), 0.02),
@@ -64,7 +100,7 @@ def volume(mesh):
     return abs(np.linalg.det(sides)).sum() / (2 if mesh.dim == 2 else 6)
 
 
-@pytest.mark.parametrize("name", ["skfem-2d", "dolfinx-2d", "skfem-3d"])
+@pytest.mark.parametrize("name", ["skfem-2d", "dolfinx-2d", "skfem-3d", "mfem-2d"])
 def test_new_points_follow_the_curves(name):
     make, h = CURVED[name]
     other = make()
@@ -82,6 +118,22 @@ def test_straight_edges_of_second_order_are_no_geometry():
     held = objects.opened(straight)
     assert held.geometry is None
     assert held.mesh.n_points == 25
+
+
+def test_quadratic_functions_are_read_at_the_corners():
+    from anistar.adapters import dolfinx as adapter
+
+    domain = objects.made(objects.as_mesh(skfem.MeshTri().refined(2)), {}, "dolfinx").domain
+    fem = adapter.dolfinx.fem
+    for shape in ((), (2,)):
+        function = fem.Function(fem.functionspace(domain, ("Lagrange", 2, shape)))
+        function.interpolate(lambda x, shape=shape: x[: 2 if shape else 1] ** 2)
+        points = objects.as_mesh(domain).points
+        expected = points**2 if shape else points[:, 0] ** 2
+        assert np.allclose(objects.values_of(function), expected)
+    broken = fem.Function(fem.functionspace(domain, ("DG", 1)))
+    with pytest.raises(TypeError, match="no unknowns at vertices: it is not continuous Lagrange"):
+        objects.values_of(broken)
 
 
 def test_functions_on_curved_domains_are_read_at_the_corners():

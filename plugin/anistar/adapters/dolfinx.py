@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,11 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats, Ints
 from ..base.extras import install_command
-from ..formats.content.second_order import geometry_through
+from ..formats.content.assembly import assembled
+from ..formats.content.raw import Block, RawMesh
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
-from ..meshes.topology import RowKeys, cell_determinants
+from ..meshes.topology import RowKeys
 from ..objects import Content, Form, register
 from . import dolfinx_wheel
 
@@ -32,8 +34,20 @@ except ImportError as error:
     error.add_note(f"anistar's dolfinx adapter needs it: {install_command('dolfinx')}")
     raise
 
-# Nodes of cells of second order in the middle of edges: dolfinx counts edges by what is opposite.
-_MIDDLES = {2: [5, 3, 4], 3: [9, 6, 8, 7, 5, 4]}
+# Kinds of cells by name and order of the geometry, and where the nodes are in dolfinx's rows: it
+# counts edges by what is opposite, and the corners of a square row by row.
+_KINDS = {
+    ("triangle", 1): ("triangle", [0, 1, 2]),
+    ("triangle", 2): ("triangle6", [0, 1, 2, 5, 3, 4]),
+    ("tetrahedron", 1): ("tetra", [0, 1, 2, 3]),
+    ("tetrahedron", 2): ("tetra10", [0, 1, 2, 3, 9, 6, 8, 7, 5, 4]),
+    ("quadrilateral", 1): ("quad", [0, 1, 3, 2]),
+    ("hexahedron", 1): ("hexahedron", [0, 1, 3, 2, 4, 5, 7, 6]),
+}
+_CORNERS = {"triangle": 3, "tetrahedron": 4, "quadrilateral": 4, "hexahedron": 8}
+# Of facets, edges and points by their number of corners.
+_LOWER = {1: ("vertex", [0]), 2: ("line", [0, 1]), 3: ("triangle", [0, 1, 2])}
+_LOWER[4] = ("quad", [0, 1, 3, 2])
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +135,8 @@ def from_dolfinx(
     Parameters
     ----------
     domain : dolfinx.mesh.Mesh
-        Triangles in 2D or tetrahedra in 3D, on one process; of second order the corners.
+        On one process. Quadrilaterals and hexahedra are split, and of cells of second order the
+        corners are taken, with a logged warning.
     cell_tags, facet_tags : dolfinx.mesh.MeshTags, optional
         Cells without a tag get 0.
     names : mapping of (dim, tag) to str, optional
@@ -139,58 +154,66 @@ def from_dolfinx(
     Raises
     ------
     TypeError
-        If the cells are not simplices of first or second order that fill the space.
+        If the cells are of another kind or order, or do not fill the space.
     ValueError
         If the mesh is distributed.
     """
-    dim = domain.topology.dim
+    tags = _Tags(cell_tags, facet_tags, edge_tags, vertex_tags, names or {})
+    return _content(domain, tags).mesh
+
+
+@dataclass(frozen=True, eq=False)
+class _Tags:
+    """Tags of all strata, None where there are none, and their names."""
+
+    cells: Any = None
+    facets: Any = None
+    edges: Any = None
+    vertices: Any = None
+    names: Mapping[tuple[int, int], str] = field(default_factory=dict)
+
+
+def _content(domain: Any, tags: _Tags) -> Content:
+    dim, cell = domain.topology.dim, domain.topology.cell_name()
     if domain.comm.size > 1:
         raise ValueError(f"the mesh is on {domain.comm.size} processes; one is supported")
-    if domain.topology.cell_name() not in ("triangle", "tetrahedron"):
-        raise TypeError(f"cells are {domain.topology.cell_name()}s, not triangles or tetrahedra")
-    if domain.geometry.dim != dim or _order(domain) not in (1, 2):
-        raise TypeError("cells must be of order 1 or 2 and fill the space: no surfaces")
-    number = _numbers(domain)
-    nodes = _corner_nodes(domain)
-    points = np.empty((number.max() + 1, dim))
-    points[number[nodes]] = domain.geometry.x[nodes, :dim]
+    order = int(domain.geometry.cmaps[0].degree)
+    if domain.geometry.dim != dim or (cell, order) not in _KINDS:
+        known = ", ".join(f"{name}s of order {degree}" for name, degree in _KINDS)
+        raise TypeError(
+            f"cells are {cell}s of order {order} in {domain.geometry.dim}D: {known} that fill the "
+            "space are supported"
+        )
+    kind, place = _KINDS[cell, order]
+    given = np.asarray(domain.geometry.input_global_indices)
+    points = np.empty((len(given), dim))
+    points[given] = domain.geometry.x[:, :dim]
     original = _original_cells(domain)
-    cells = np.empty(nodes.shape, np.int32)
-    cells[original] = number[nodes]
-    inverted = cell_determinants(points, cells) < 0
-    cells[inverted, -2:] = cells[inverted, :-3:-1]
-    tags = np.zeros(len(cells), np.int32)
-    if cell_tags is not None:
-        tags[original[cell_tags.indices]] = cell_tags.values
-    marked: dict[str, Any] = {}
-    if facet_tags is not None:
-        marked["facets"] = _entities(domain, dim - 1)[facet_tags.indices]
-        marked["facet_tags"] = facet_tags.values
-    if edge_tags is not None and dim == 3:
-        marked["edges"] = _entities(domain, 1)[edge_tags.indices]
-        marked["edge_tags"] = edge_tags.values
-    if vertex_tags is not None:
-        marked["corners"] = _entities(domain, 0)[vertex_tags.indices, 0]
-    return Mesh(points=points, cells=cells, cell_tags=tags, names=names or {}, **marked)
+    rows = np.empty((len(original), len(place)), np.int64)
+    rows[original] = given[domain.geometry.dofmaps[0][:, place]]
+    numbers = np.zeros(len(rows), np.int64)
+    if tags.cells is not None:
+        numbers[original[tags.cells.indices]] = tags.cells.values
+    raw = RawMesh(points, [Block(kind, rows, numbers)], names=dict(tags.names), is_oriented=False)
+    for below, marked in ((1, tags.facets), (dim - 1, tags.edges if dim == 3 else None)):
+        if marked is not None:
+            raw.blocks.append(_marked(domain, dim - below, marked))
+    if tags.vertices is not None:
+        raw.corners = _marked(domain, 0, tags.vertices).rows.ravel()
+    mesh, _, report = assembled(raw, Path("dolfinx.mesh.Mesh"))
+    return Content(mesh, {}, report.geometry)
 
 
-def curves_of(domain: Any, mesh: Mesh) -> Mesh | None:
-    """Return the geometry of a domain of second order, given the mesh of its corners, else None."""
-    if _order(domain) != 2:
-        return None
-    dim = domain.topology.dim
-    middles = domain.geometry.dofmaps[0][:, _MIDDLES[dim]]
-    cells = _numbers(domain)[_corner_nodes(domain)]
-    return geometry_through(mesh, cells, domain.geometry.x[middles, :dim])
-
-
-def _order(domain: Any) -> int:
-    return int(domain.geometry.cmaps[0].degree)
+def _marked(domain: Any, dim: int, tags: Any) -> Block:
+    """Return the entities of a dimension that have tags, in the numbers they were given in."""
+    rows = np.asarray(domain.geometry.input_global_indices)[_nodes_of(domain, dim)[tags.indices]]
+    kind, place = _LOWER[rows.shape[1]]
+    return Block(kind, rows[:, place].astype(np.int64), np.asarray(tags.values, np.int64))
 
 
 def _corner_nodes(domain: Any) -> Ints:
-    """Return the nodes (m, d + 1) of the geometry at the corners of the cells."""
-    return np.asarray(domain.geometry.dofmaps[0][:, : domain.topology.dim + 1])
+    """Return the nodes of the geometry at the corners of the cells."""
+    return np.asarray(domain.geometry.dofmaps[0][:, : _CORNERS[domain.topology.cell_name()]])
 
 
 def _original_cells(domain: Any) -> Ints:
@@ -213,12 +236,12 @@ def _numbers(domain: Any) -> Ints:
 
 
 def point_values(function: Any) -> Floats:
-    """Return the values of a P1 function at the points of the mesh.
+    """Return the values of a continuous function at the points of the mesh.
 
     Parameters
     ----------
     function : dolfinx.fem.Function
-        Continuous, linear; a scalar, vector or tensor such as a metric.
+        Lagrange of any order; a scalar, vector or tensor such as a metric.
 
     Returns
     -------
@@ -227,7 +250,7 @@ def point_values(function: Any) -> Floats:
         function has.
     """
     space = function.function_space
-    nodes, dofs = _p1_maps(space)
+    nodes, dofs = _corner_nodes(space.mesh), _dofs_at_corners(space)
     shape = _value_shape(space)
     number = _numbers(space.mesh)
     values = np.empty((number.max() + 1, *shape))
@@ -282,17 +305,17 @@ def to_functions(domain: Any, fields: Mapping[str, Field | ArrayLike]) -> dict[s
     """
     placed: dict[str, Any] = {}
     for name, given in fields.items():
-        field = given if isinstance(given, Field) else Field(np.asarray(given))
-        shape = field.values.shape[1:]
-        if field.kind == "label" or field.on == "cell_nodes":
+        known = given if isinstance(given, Field) else Field(np.asarray(given))
+        shape = known.values.shape[1:]
+        if known.kind == "label" or known.on == "cell_nodes":
             placed[name] = given
-        elif field.on == "points":
+        elif known.on == "points":
             space = dolfinx.fem.functionspace(domain, ("Lagrange", 1, shape))
-            placed[name] = to_function(space, field.values)
+            placed[name] = to_function(space, known.values)
         else:
             space = dolfinx.fem.functionspace(domain, ("DG", 0, shape))
             function = dolfinx.fem.Function(space)
-            values = field.values[_original_cells(domain)]
+            values = known.values[_original_cells(domain)]
             function.x.array.reshape(-1, *shape)[space.dofmap.list[:, 0]] = values
             placed[name] = function
     return placed
@@ -313,6 +336,16 @@ def _value_shape(space: Any) -> tuple[int, ...]:
     return shape
 
 
+def _dofs_at_corners(space: Any) -> Ints:
+    """Return the unknowns at the corners of the cells, in the order of the corners."""
+    layout = space.dofmap.dof_layout
+    corners = range(_corner_nodes(space.mesh).shape[1])
+    places = [layout.entity_dofs(0, corner) for corner in corners]
+    if any(len(place) != 1 for place in places):
+        raise TypeError("the space has no unknowns at vertices: it is not continuous Lagrange")
+    return np.asarray(space.dofmap.list[:, [place[0] for place in places]])
+
+
 def _p1_maps(space: Any) -> tuple[Ints, Ints]:
     nodes, dofs = _corner_nodes(space.mesh), space.dofmap.list
     dim = space.mesh.topology.dim
@@ -322,31 +355,25 @@ def _p1_maps(space: Any) -> tuple[Ints, Ints]:
 
 
 def _entities(domain: Any, dim: int) -> Ints:
-    """Return the points of every facet, edge or vertex, as numbered when they were given."""
+    """Return the points of every facet, edge or vertex, in the numbers of the `Mesh`."""
+    return np.asarray(_numbers(domain)[_nodes_of(domain, dim)])
+
+
+def _nodes_of(domain: Any, dim: int) -> Ints:
+    """Return the nodes of the geometry at the corners of every facet, edge or vertex."""
     domain.topology.create_entities(dim)
     domain.topology.create_connectivity(dim, domain.topology.dim)
     count = domain.topology.index_map(dim).size_local
-    rows = dolfinx.mesh.entities_to_geometry(domain, dim, np.arange(count, dtype=np.int32))
-    return np.asarray(_numbers(domain)[rows])
+    return np.asarray(
+        dolfinx.mesh.entities_to_geometry(domain, dim, np.arange(count, dtype=np.int32))
+    )
 
 
 def _read(other: Any) -> Content:
-    domain = other.domain if isinstance(other, DolfinxMesh) else other
-    mesh = _tagged(other)
-    return Content(mesh, {}, curves_of(domain, mesh))
-
-
-def _tagged(other: Any) -> Mesh:
-    if isinstance(other, DolfinxMesh):
-        return from_dolfinx(
-            other.domain,
-            other.cell_tags,
-            other.facet_tags,
-            other.names,
-            edge_tags=other.edge_tags,
-            vertex_tags=other.vertex_tags,
-        )
-    return from_dolfinx(other)
+    if not isinstance(other, DolfinxMesh):
+        return _content(other, _Tags())
+    tags = (other.cell_tags, other.facet_tags, other.edge_tags, other.vertex_tags)
+    return _content(other.domain, _Tags(*tags, other.names))
 
 
 def _make(mesh: Mesh, fields: Any, like: Any) -> Any:

@@ -18,7 +18,6 @@ from ..base.extras import install_command
 from ..formats.content.assembly import assembled
 from ..formats.content.raw import Block, RawMesh
 from ..meshes.mesh import Mesh
-from ..meshes.topology import cell_determinants
 from ..objects import Content, Form, register
 
 try:
@@ -27,7 +26,7 @@ except ImportError as error:
     error.add_note(f"anistar's MFEM adapter needs PyMFEM: {install_command('mfem')}")
     raise
 
-_TRIANGLE, _TETRAHEDRON = 2, 4  # mfem::Element::Type
+# mfem::Element::Type
 _KINDS = {
     1: "line",
     2: "triangle",
@@ -37,6 +36,8 @@ _KINDS = {
     6: "wedge",
     7: "pyramid",
 }
+# The kinds of second order, and where MFEM's edges are in the order of VTK.
+_SECOND_ORDER = {2: ("triangle6", [0, 1, 2]), 4: ("tetra10", [0, 3, 1, 2, 4, 5])}
 _BY_NODES = 0  # mfem::Ordering::byNODES
 
 
@@ -82,47 +83,29 @@ def to_mfem(mesh: Mesh) -> Any:
 
 
 def from_mfem(other: Any) -> Mesh:
-    """Return a straight `mfem.Mesh` as a `Mesh`.
+    """Return an `mfem.Mesh` as a `Mesh`.
 
-    Other cells than triangles and tetrahedra are split, with a logged warning. Attributes of
-    elements and boundary elements become tags, called by the first attribute set, in alphabetical
-    order, that holds nothing else.
+    Other cells than triangles and tetrahedra are split, and of curved ones the corners are taken,
+    with a logged warning. Attributes of elements and boundary elements become tags, called by the
+    first attribute set, in alphabetical order, that holds nothing else.
 
     Raises
     ------
     TypeError
-        If it is another object, or curved.
+        If it is another object, or a surface.
     ValueError
         If cells are so twisted that they cannot be split.
     """
+    return _content(other).mesh
+
+
+def _content(other: Any) -> Content:
     if not isinstance(other, mfem.Mesh):
         raise TypeError(f"an mfem.Mesh is needed, not {type(other).__name__}")
     dim = other.Dimension()
-    wanted = {2: _TRIANGLE, 3: _TETRAHEDRON}.get(dim)
-    if other.GetNodes() is not None or other.SpaceDimension() != dim:
-        raise TypeError("the mesh must be straight and fill the space")
-    if any(other.GetElementType(i) != wanted for i in range(other.GetNE())):
-        return _split_up(other)
-    points = np.array(other.GetVertexArray())[:, :dim]
-    cells = np.array([other.GetElementVertices(i) for i in range(other.GetNE())], np.int32)
-    facets = [other.GetBdrElementVertices(i) for i in range(other.GetNBE())]
-    inverted = cell_determinants(points, cells) < 0
-    cells[inverted, -2:] = cells[inverted, :-3:-1]
-    return Mesh(
-        points=points,
-        cells=cells,
-        cell_tags=np.array(other.GetAttributeArray(), np.int32),
-        facets=np.array(facets, np.int32).reshape(-1, dim),
-        facet_tags=np.array(other.GetBdrAttributeArray(), np.int32),
-        names={**_names(other.bdr_attribute_sets, dim - 1), **_names(other.attribute_sets, dim)},
-    )
-
-
-def _split_up(other: Any) -> Mesh:
-    """Return a mesh of any cells as triangles or tetrahedra."""
-    dim = other.Dimension()
-    cells = range(other.GetNE())
-    sides = range(other.GetNBE())
+    if other.SpaceDimension() != dim:
+        raise TypeError("the mesh must fill the space: surfaces are not supported")
+    cells, sides = range(other.GetNE()), range(other.GetNBE())
     raw = RawMesh(
         np.array(other.GetVertexArray(), np.float64)[:, :dim],
         [
@@ -138,8 +121,12 @@ def _split_up(other: Any) -> Mesh:
             ),
         ],
         names={**_names(other.bdr_attribute_sets, dim - 1), **_names(other.attribute_sets, dim)},
+        is_oriented=False,
     )
-    return assembled(raw, Path("mfem.Mesh"))[0]
+    if other.GetNodes() is not None:
+        _take_nodes(raw, other)
+    mesh, _, report = assembled(raw, Path("mfem.Mesh"))
+    return Content(mesh, {}, report.geometry)
 
 
 def _blocks(types: list[int], rows: list[list[int]], tags: Ints) -> list[Block]:
@@ -149,6 +136,32 @@ def _blocks(types: list[int], rows: list[list[int]], tags: Ints) -> list[Block]:
         Block(_KINDS[number], np.array([rows[i] for i in found], np.int64), tags[found])
         for number, found in members.items()
     ]
+
+
+def _take_nodes(raw: RawMesh, other: Any) -> None:
+    """Take the nodes of a curved mesh: corners, and of second order the middles of edges too."""
+    space = other.GetNodes().FESpace()
+    count, dim = space.GetNDofs(), raw.points.shape[1]
+    unknowns = np.array(other.GetNodes().GetDataArray())
+    by_nodes = space.GetOrdering() == _BY_NODES
+    nodes = unknowns.reshape(dim, count).T if by_nodes else unknowns.reshape(count, dim)
+    kinds = {other.GetElementType(i) for i in range(other.GetNE())}
+    if not space.FEColl().Name().startswith("H1_"):
+        raw.warnings.append("a curved mesh: its edges are taken as straight")
+        return
+    raw.points = np.ascontiguousarray(nodes[: other.GetNV()])
+    if not kinds <= _SECOND_ORDER.keys() or space.GetMaxElementOrder() != 2:
+        raw.warnings.append("a curved mesh: its edges are taken as straight")
+        return
+    (number,) = kinds
+    kind, order = _SECOND_ORDER[number]
+    # of second order the nodes are the vertices, and then one for each edge
+    edges = np.array([other.GetElementEdges(i)[0] for i in range(other.GetNE())], np.int64)
+    raw.points = np.ascontiguousarray(nodes)
+    raw.blocks[0].kind = kind
+    raw.blocks[0].rows = np.concatenate(
+        [raw.blocks[0].rows, other.GetNV() + edges[:, order]], axis=1
+    )
 
 
 def point_values(function: Any) -> Floats:
@@ -216,7 +229,7 @@ register(
     Form(
         name="mfem",
         accepts=lambda obj: isinstance(obj, mfem.Mesh),
-        read=lambda mesh: Content(from_mfem(mesh), {}),
+        read=_content,
         make=lambda mesh, fields, like: to_mfem(mesh),
         values=lambda obj: point_values(obj) if isinstance(obj, mfem.GridFunction) else None,
     )

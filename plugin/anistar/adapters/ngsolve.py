@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import AnyArray, Floats, Ints
 from ..base.extras import install_command
+from ..formats.content.assembly import assembled
+from ..formats.content.raw import Block, RawMesh
 from ..meshes.mesh import Mesh
-from ..meshes.topology import cell_determinants
 from ..objects import Content, Form, register
 
 try:
@@ -24,6 +26,20 @@ except ImportError as error:
 
 _CORNER = "corner"
 _NAMELESS = ("", "default")
+# Netgen's numbers of the types of elements, and where the nodes are in its rows. Those of a
+# quadrilateral or a cell in space of second order are left out but for the corners.
+_KINDS = {
+    10: ("triangle", [0, 1, 2]),
+    11: ("quad", [0, 1, 2, 3]),
+    12: ("triangle6", [0, 1, 2, 5, 3, 4]),
+    13: ("quad", [0, 1, 2, 3]),
+    14: ("quad", [0, 1, 2, 3]),
+    20: ("tetra", [0, 1, 2, 3]),
+    21: ("tetra10", [0, 1, 2, 3, 4, 7, 5, 6, 8, 9]),
+    22: ("pyramid", [0, 1, 2, 3, 4]),
+    23: ("wedge", [0, 1, 2, 3, 4, 5]),
+    25: ("hexahedron", [0, 1, 2, 3, 4, 5, 6, 7]),
+}
 
 
 def to_ngsolve(mesh: Mesh) -> Any:
@@ -52,10 +68,12 @@ def to_ngsolve(mesh: Mesh) -> Any:
 
 
 def from_ngsolve(other: Any) -> Mesh:
-    """Return an `ngsolve.Mesh` of triangles or tetrahedra as a `Mesh`.
+    """Return an `ngsolve.Mesh` as a `Mesh`.
 
-    Of curved meshes these are the corners: Netgen's curves do not go through points of the
-    geometry, so that the smooth curve through the corners is the nearer one.
+    Other cells than triangles and tetrahedra are split, and of elements of second order the corners
+    are taken, with a logged warning. So are the corners of curved meshes: curves that NGSolve fits
+    to elements do not go through points of the geometry, so that the smooth curve through the
+    corners is the nearer one.
 
     Materials, boundaries and (3D) named edges become tags 1, 2, ... in NGSolve's order, with their
     names; several of one name become one tag. Named points become corners. Netgen has an edge
@@ -64,31 +82,53 @@ def from_ngsolve(other: Any) -> Mesh:
     Raises
     ------
     TypeError
-        If it is another object, or has other cells, or is a surface.
+        If it is another object, or is a surface.
+    ValueError
+        If it has elements of an unknown type, or so twisted that they cannot be split.
     """
+    return _content(other).mesh
+
+
+def _content(other: Any) -> Content:
     if not isinstance(other, ngsolve.Mesh):
         raise TypeError(f"an ngsolve.Mesh is needed, not {type(other).__name__}")
     netgen, dim = other.ngmesh, other.dim
     if dim not in (2, 3):
         raise TypeError(f"only meshes in 2D and 3D are supported, not {dim}D")
-    points = np.array(netgen.Coordinates())[:, :dim]
-    elements = {1: netgen.Elements1D, 2: netgen.Elements2D, 3: netgen.Elements3D}
-    cells, cell_tags, names = _read(elements[dim]().NumPy(), dim, other.GetMaterials())
-    facets, facet_tags, sides = _read(elements[dim - 1]().NumPy(), dim - 1, other.GetBoundaries())
-    inverted = cell_determinants(points, cells) < 0
-    cells[inverted, -2:] = cells[inverted, :-3:-1]
-    edges, edge_tags, ridges = _ridges(other)
-    return Mesh(
-        points=points,
-        cells=cells,
-        cell_tags=cell_tags,
-        facets=facets,
-        facet_tags=facet_tags,
-        edges=edges,
-        edge_tags=edge_tags,
-        corners=_corners(other),
-        names={**names, **sides, **ridges},
-    )
+    lines, faces = netgen.Elements1D().NumPy(), netgen.Elements2D().NumPy()
+    raw = RawMesh(np.array(netgen.Coordinates())[:, :dim], [], is_oriented=False)
+    raw.corners = _corners(other)
+    if dim == 2:
+        _add(raw, faces, 2, other.GetMaterials())
+        _add(raw, lines, 1, other.GetBoundaries())
+    else:
+        _add(raw, netgen.Elements3D().NumPy(), 3, other.GetMaterials())
+        _add(raw, faces, 2, other.GetBoundaries())
+        called = other.GetBBoundaries()
+        named = [k for k, name in enumerate(called, start=1) if name not in _NAMELESS]
+        _add(raw, lines[np.isin(lines["index"], named)], 1, called)
+    mesh, _, report = assembled(raw, Path("ngsolve.Mesh"))
+    return Content(mesh, {}, report.geometry)
+
+
+def _add(raw: RawMesh, elements: AnyArray, dim: int, called: tuple[str, ...]) -> None:
+    """Add the elements of one dimension, and what their tags are called."""
+    if len(elements) == 0:
+        return
+    distinct = list(dict.fromkeys(called))
+    tag_of = np.array([distinct.index(name) + 1 for name in called], dtype=np.int64)
+    tags = tag_of[elements["index"] - 1]
+    rows = elements["nodes"].astype(np.int64) - 1  # Netgen counts from 1
+    if dim == 1:
+        raw.blocks.append(Block("line", rows[:, :2], tags))
+    for number in np.unique(elements["type"]).tolist() if dim > 1 else ():
+        if number not in _KINDS:
+            raise ValueError(f"there are {dim}D elements of Netgen's type {number}: split them")
+        kind, order = _KINDS[number]
+        chosen = elements["type"] == number
+        raw.blocks.append(Block(kind, rows[chosen][:, order], tags[chosen]))
+    used = set(tags.tolist())
+    raw.names |= {(dim, tag): name for tag, name in enumerate(distinct, start=1) if tag in used}
 
 
 def point_values(function: Any) -> Floats:
@@ -155,18 +195,6 @@ def _nodal(function: Any) -> Floats:
     return np.asarray(rows[: space.mesh.nv])
 
 
-def _ridges(
-    other: Any,
-) -> tuple[Ints, Ints, dict[tuple[int, int], str]]:
-    """Return the points, tags and names of the edges in space that have a name."""
-    if other.dim == 2:
-        return np.zeros((0, 2), np.int32), np.zeros(0, np.int32), {}
-    rows, tags, names = _read(other.ngmesh.Elements1D().NumPy(), 1, other.GetBBoundaries())
-    kept = {key: name for key, name in names.items() if name not in _NAMELESS}
-    own = np.isin(tags, [tag for _, tag in kept])
-    return rows[own], tags[own], kept
-
-
 def _corners(other: Any) -> Ints:
     stratum = ngsolve.BBND if other.dim == 2 else ngsolve.BBBND
     named = [
@@ -177,27 +205,11 @@ def _corners(other: Any) -> Ints:
     return np.unique(named).astype(np.int32)
 
 
-def _read(
-    elements: AnyArray, dim: int, called: tuple[str, ...]
-) -> tuple[Ints, Ints, dict[tuple[int, int], str]]:
-    """Return the points, tags and names of elements of one dimension."""
-    nodes = elements["nodes"]
-    # Netgen counts nodes from 1; quadrilaterals and curved cells have more than a simplex.
-    if len(elements) and nodes.shape[1] > dim + 1 and nodes[:, dim + 1 :].any() and dim > 1:
-        raise TypeError(f"there are {dim}-dimensional cells other than straight simplices")
-    distinct = list(dict.fromkeys(called))
-    tag_of = np.array([distinct.index(name) + 1 for name in called], dtype=np.int32)
-    tags = tag_of[elements["index"] - 1] if len(elements) else np.zeros(0, np.int32)
-    rows = np.ascontiguousarray(nodes[:, : dim + 1] - 1, dtype=np.int32)
-    names = {(dim, tag): name for tag, name in enumerate(distinct, start=1)}
-    return rows, tags, names
-
-
 register(
     Form(
         name="ngsolve",
         accepts=lambda obj: isinstance(obj, ngsolve.Mesh),
-        read=lambda mesh: Content(from_ngsolve(mesh), {}),
+        read=_content,
         make=lambda mesh, fields, like: to_ngsolve(mesh),
         values=lambda obj: point_values(obj) if isinstance(obj, ngsolve.GridFunction) else None,
     )

@@ -12,9 +12,8 @@ from ..base.arrays import Floats, Ints, Longs
 from ..base.extras import install_command
 from ..formats.content.assembly import assembled
 from ..formats.content.raw import Block, RawMesh
-from ..formats.content.second_order import geometry_through
 from ..meshes.mesh import Mesh
-from ..meshes.topology import RowKeys, cell_determinants
+from ..meshes.topology import RowKeys
 from ..objects import Content, Form, register
 
 try:
@@ -24,8 +23,13 @@ except ImportError as error:
     error.add_note(f"anistar's scikit-fem adapter needs it: {install_command('skfem')}")
     raise
 
-# The kinds of cells and facets that are split, and where the corners are in scikit-fem's rows.
-_SPLIT = {
+# Kinds of cells and facets, and where the corners are in scikit-fem's rows of cells. Those of
+# second order come first: they are subclasses.
+_KINDS = {
+    MeshTri2: ("triangle6", "line", [0, 1, 2]),
+    MeshTet2: ("tetra10", "triangle", [0, 1, 2, 3]),
+    MeshTri: ("triangle", "line", [0, 1, 2]),
+    MeshTet: ("tetra", "triangle", [0, 1, 2, 3]),
     MeshQuad: ("quad", "line", [0, 1, 2, 3]),
     MeshHex: ("hexahedron", "quad", [0, 3, 6, 2, 1, 5, 7, 4]),
 }
@@ -62,11 +66,11 @@ def to_skfem(mesh: Mesh) -> Any:
 
 
 def from_skfem(other: Any) -> Mesh:
-    """Return a `skfem.MeshTri` or `skfem.MeshTet` as a `Mesh`.
+    """Return a mesh of scikit-fem as a `Mesh`.
 
-    A `MeshQuad` or `MeshHex` is split, with a logged warning. Of meshes of second order these are
-    the corners, see `curves_of` for their edges. Boundaries and subdomains become tags 1, 2, ...
-    in the order of their names, with these names.
+    A `MeshQuad` or `MeshHex` is split, and of second order the corners are taken, with a logged
+    warning. Boundaries and subdomains become tags 1, 2, ... in the order of their names, with these
+    names.
 
     Raises
     ------
@@ -76,60 +80,35 @@ def from_skfem(other: Any) -> Mesh:
         If boundaries or subdomains overlap, which one tag for each facet or cell cannot say; or
         cells are so twisted that they cannot be split.
     """
-    if isinstance(other, MeshQuad | MeshHex):
-        return _split_up(other)
-    if not isinstance(other, MeshTri | MeshTet) or other.t.shape[0] != other.p.shape[0] + 1:
+    return _content(other).mesh
+
+
+def _content(other: Any) -> Content:
+    known = next((kinds for base, kinds in _KINDS.items() if isinstance(other, base)), None)
+    if known is None:
         raise TypeError(
             f"only MeshTri, MeshTet, MeshQuad and MeshHex are supported, not {type(other).__name__}"
         )
-    points, cells = np.asarray(other.p.T)[: other.nvertices], np.array(other.t.T)
-    dim = points.shape[1]
-    inverted = cell_determinants(points, cells) < 0
-    cells[inverted, -2:] = cells[inverted, :-3:-1]
-    chosen, facet_tags, names = _tagged(other.boundaries, other.facets.shape[1], dim - 1)
-    _, cell_tags, regions = _tagged(other.subdomains, len(cells), dim)
-    return Mesh(
-        points=points,
-        cells=cells,
-        cell_tags=cell_tags,
-        facets=np.asarray(other.facets.T)[chosen],
-        facet_tags=facet_tags[chosen],
-        names={**names, **regions},
-    )
-
-
-def _split_up(other: Any) -> Mesh:
-    """Return quadrilaterals or hexahedra as triangles or tetrahedra."""
-    rows = next(rows for base, rows in _SPLIT.items() if isinstance(other, base))
-    kind, facet_kind, corners = rows
+    kind, facet_kind, corners = known
     dim = other.p.shape[0]
     chosen, facet_tags, names = _tagged(other.boundaries, other.facets.shape[1], dim - 1)
     _, cell_tags, regions = _tagged(other.subdomains, other.t.shape[1], dim)
     raw = RawMesh(
-        np.ascontiguousarray(other.p.T[: other.nvertices], np.float64),
+        np.ascontiguousarray(other.p.T, np.float64),
         [
-            Block(kind, np.asarray(other.t.T[:, corners], np.int64), cell_tags),
-            Block(facet_kind, np.asarray(other.facets.T[chosen], np.int64), facet_tags[chosen]),
+            Block(kind, other.t.T[:, corners].astype(np.int64), cell_tags),
+            Block(facet_kind, other.facets.T[chosen].astype(np.int64), facet_tags[chosen]),
         ],
         names={**names, **regions},
+        is_oriented=False,
     )
-    if other.p.shape[1] > other.nvertices:
+    if isinstance(other, MeshTri2 | MeshTet2):
+        raw.blocks[0].rows = other.dofs.element_dofs.T.astype(np.int64)
+    elif len(raw.points) > other.nvertices:
+        raw.points = raw.points[: other.nvertices]
         raw.warnings.append("cells of second order: their edges are taken as straight")
-    return assembled(raw, Path(f"skfem.{type(other).__name__}"))[0]
-
-
-def curves_of(other: Any, mesh: Mesh) -> Mesh | None:
-    """Return the geometry of a mesh of second order, given that of its corners, else None."""
-    if not isinstance(other, MeshTri2 | MeshTet2):
-        return None
-    corners = mesh.dim + 1
-    middles = other.doflocs.T[other.dofs.element_dofs[corners:].T]
-    return geometry_through(mesh, np.asarray(other.t.T), middles)
-
-
-def _content(other: Any) -> Content:
-    mesh = from_skfem(other)
-    return Content(mesh, {}, curves_of(other, mesh))
+    mesh, _, report = assembled(raw, Path(f"skfem.{type(other).__name__}"))
+    return Content(mesh, {}, report.geometry)
 
 
 def point_values(basis: Any, unknowns: ArrayLike) -> Floats:

@@ -87,7 +87,8 @@ def _assembled(raw: RawMesh, path: Path) -> tuple[Mesh, dict[str, Field], ReadRe
     number = np.cumsum(used) - 1
     rows, flipped = _flipped(found.points, cells.rows)
     notes = [*raw.warnings, *found.notes]
-    _note(notes, flipped, "inverted cell(s) flipped, the first is cell")
+    if raw.is_oriented:
+        _note(notes, flipped, "inverted cell(s) flipped, the first is cell")
     unused = ~used & ~found.is_mid
     _note(notes, unused, "point(s) without a cell dropped, the first is point")
     lower, repeated = _lower_arrays(found.blocks, dim, used, notes)

@@ -75,5 +75,6 @@ class RawMesh:
     point_data: dict[str, AnyArray] = field(default_factory=dict)
     six: Literal["vtk", "xdmf"] | None = None
     labels: set[str] = field(default_factory=set)
+    is_oriented: bool = True
     warnings: list[str] = field(default_factory=list)
     z: float = 0.0

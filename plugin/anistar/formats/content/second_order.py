@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,8 +15,6 @@ from .raw import Block
 # Nodes nearer to the straight edge than this part of its length are on it: what four bytes for a
 # coordinate keep.
 STRAIGHT = 1e-6
-
-_log = logging.getLogger(__name__)
 
 _IN_FOUR = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))
 # Four corners of a tetrahedron; between them an octahedron, which each of its diagonals splits.
@@ -106,29 +103,6 @@ def curved_geometry(mesh: Mesh, mids: MidNodes, points: Floats) -> tuple[Mesh | 
     except ValueError as error:
         return None, [refused.format(f"the mesh through their nodes is not valid ({error})")]
     return geometry, ["the edges of its elements are curved: they are a geometry of their own"]
-
-
-def geometry_through(mesh: Mesh, cells: AnyArray, middles: Floats) -> Mesh | None:
-    """Return the geometry of cells whose edges are given by their middles, None if straight.
-
-    What is to be said of it is logged.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Of the corners.
-    cells : (m, d + 1) int array
-        Corners of the cells, in the numbers of the mesh.
-    middles : (m, e, d) float64
-        The middle of each edge, in the order of elements of second order in VTK.
-    """
-    edges, first = np.unique(np.sort(_edges_in(cells), axis=1), axis=0, return_index=True)
-    places = middles.reshape(-1, mesh.dim)[first]
-    mids = MidNodes(edges.astype(np.int64), np.arange(len(edges)), is_unique=True)
-    geometry, notes = curved_geometry(mesh, mids, places)
-    for note in notes:
-        _log.info(note)
-    return geometry
 
 
 def _edges_in(simplices: AnyArray) -> AnyArray:
