@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import itertools
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -11,14 +12,14 @@ from typing import Any
 MOST_ROWS = 40
 
 
-class Told:
+class Told(ABC):
     """What tells its figures by name, instead of all its arrays."""
 
     __slots__ = ()
 
+    @abstractmethod
     def _figures(self) -> Mapping[str, Any]:
         """Return what matters, by name."""
-        raise NotImplementedError
 
     def _table(self) -> tuple[Sequence[str], Iterable[Sequence[Any]]] | None:
         """Return the columns and rows that a notebook shows beside the figures, if any."""

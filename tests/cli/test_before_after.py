@@ -5,7 +5,7 @@ import pytest
 from meshes import square
 
 import anistar
-from anistar.cli import main
+from anistar.cli import before_after, main
 from anistar.cli.console import Marked, show_table
 from anistar.remeshing.concerns import level_of
 
@@ -90,3 +90,20 @@ def test_a_flag_that_nobody_knows_is_told_by_its_command(folder, capsys):
     )
     assert main(["convert", "in.vtu", "out.vtu", "more"]) == 2
     assert "anistar convert: error: unrecognized arguments: more (" in capsys.readouterr().err
+
+
+def test_a_table_without_room_for_the_error_goes_without(folder, monkeypatch, capsys, caplog):
+    calls = []
+
+    def full(*_):
+        calls.append(1)
+        if len(calls) > 1:  # after the mesh is written
+            assert (folder / "out.vtu").exists()
+            raise MemoryError
+        return 0.5
+
+    monkeypatch.setattr(before_after, "field_error", full)
+    assert main(["adapt", "in.vtu", "--target-complexity", "60", "-o", "out.vtu"]) == 0
+    assert anistar.validate("out.vtu") == []
+    assert "estimated L2 error of u" in capsys.readouterr().out
+    assert "no memory to estimate the error" in caplog.text

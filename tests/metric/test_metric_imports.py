@@ -5,7 +5,7 @@ import anistar.metric
 
 ALLOWED = {"numpy", "scipy"}
 STANDARD = {
-    "__future__", "collections", "dataclasses", "difflib", "functools", "html", "importlib",
+    "__future__", "abc", "collections", "dataclasses", "difflib", "functools", "html", "importlib",
     "itertools", "logging", "math", "operator", "typing",
 }  # fmt: skip
 

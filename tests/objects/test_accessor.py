@@ -61,11 +61,12 @@ def test_looking_for_the_package_changes_nothing(looked):
     assert done.stdout.split("\n")[:3] == ["121", "SourceFileLoader SourceFileLoader", "[]"]
 
 
-def test_an_accessor_that_cannot_be_made_does_not_stop_the_package():
+@pytest.mark.parametrize(("first", "second"), [("anistar", "pyvista"), ("pyvista", "anistar")])
+def test_an_accessor_that_cannot_be_made_stops_neither_package(first, second):
     program = (
-        "import sys, anistar\nsys.modules['anistar.adapters.vtk.accessor'] = None\n"
-        "import pyvista\nprint(pyvista.Plane().n_points)"
-    )
+        f"import sys\nsys.modules['anistar.adapters.vtk.accessor'] = None\nimport {first}\n"
+        f"import {second}\nprint(pyvista.Plane().n_points)"
+    ).replace("print(", "import pyvista\nprint(")
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == "121"

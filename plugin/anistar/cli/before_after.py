@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +17,8 @@ from ..remeshing.concerns import Level, level_of
 from ..remeshing.fidelity import TagMeasure
 from ..remeshing.report import RemeshReport
 from . import console
+
+_log = logging.getLogger(__name__)
 
 _MEASURES = {1: "length", 2: "area", 3: "volume"}
 
@@ -63,9 +66,16 @@ class MeshBefore:
 
 
 def errors_of(mesh: Mesh, fields: Mapping[str, Any], names: Sequence[str]) -> dict[str, float]:
-    """Return the estimated interpolation error of the named fields."""
+    """Return the estimated interpolation error of the named fields.
+
+    It takes as much memory as the mesher; where there is no room for it, nothing is told.
+    """
     checked: dict[str, Field] = as_fields(mesh, {name: fields[name] for name in names})
-    return {name: field_error(mesh, field) for name, field in checked.items()}
+    try:
+        return {name: field_error(mesh, field) for name, field in checked.items()}
+    except MemoryError:
+        _log.warning("no memory to estimate the error on %s points", f"{mesh.n_points:,}")
+        return {}
 
 
 def show_before_and_after(

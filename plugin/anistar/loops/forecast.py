@@ -74,7 +74,7 @@ class Forecast:
     vertices, cells : float
         Of the new mesh.
     memory : float
-        Bytes that the process takes for it at its peak.
+        Bytes that `adapt` takes for it at its peak, beside those of Python and its libraries.
     seconds : float
         From the metric to the fields on the new mesh, on this machine as it is now.
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -37,14 +38,14 @@ class Subject:
     colour: str = "tags"
 
 
-class Plotted:
+class Plotted(ABC):
     """What has a mesh to plot."""
 
     __slots__ = ()
 
+    @abstractmethod
     def _subject(self) -> Subject:
         """Return the mesh, and what is known of it."""
-        raise NotImplementedError
 
     def plot(
         self,

@@ -26,11 +26,21 @@ def follow_imports() -> None:
 
 
 def after_import(package: str, act: Callable[[], object]) -> None:
-    """Call `act` once `package` is imported, now if it is already."""
+    """Call `act` once `package` is imported, now if it is already.
+
+    That it cannot import something is told, and stops nobody.
+    """
     if sys.modules.get(package) is not None:
-        act()
+        _done(package, act)
     else:
         sys.meta_path.insert(0, _Watch(package, act))
+
+
+def _done(package: str, act: Callable[[], object]) -> None:
+    try:
+        act()
+    except ImportError as error:
+        _log.warning("%s has no accessor of anistar: %s", package, error)
 
 
 class _Watch(MetaPathFinder):
@@ -58,10 +68,7 @@ class _Watch(MetaPathFinder):
     def _done(self) -> None:
         if self in sys.meta_path:
             sys.meta_path.remove(self)
-        try:
-            self._act()
-        except ImportError as error:  # the package is there all the same
-            _log.warning("%s has no accessor of anistar: %s", self._package, error)
+        _done(self._package, self._act)
 
 
 class _Followed(Loader):

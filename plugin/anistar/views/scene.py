@@ -199,16 +199,18 @@ def _of_field(mesh: Mesh, name: str, given: Field | ArrayLike) -> _Colours:
 
 
 def _of_tags(mesh: Mesh) -> _Colours:
-    keys = [(mesh.dim, int(tag)) for tag in np.unique(mesh.cell_tags)]
-    keys += [(mesh.dim - 1, int(tag)) for tag in np.unique(mesh.facet_tags)]
-    place = {key: number for number, key in enumerate(keys)}
+    regions, in_cells = np.unique(mesh.cell_tags, return_inverse=True)
+    sides, on_facets = np.unique(mesh.facet_tags, return_inverse=True)
+    keys = [(mesh.dim, int(tag)) for tag in regions]
+    keys += [(mesh.dim - 1, int(tag)) for tag in sides]
     kinds = {mesh.dim: "region", mesh.dim - 1: "facet"}
     names = tuple(mesh.names.get(key) or f"{kinds[key[0]]} {key[1]}" for key in keys)
-    in_cells = np.array([place[mesh.dim, int(tag)] for tag in mesh.cell_tags], dtype=np.float64)
-    on_facets = np.array(
-        [place[mesh.dim - 1, int(tag)] for tag in mesh.facet_tags], dtype=np.float64
+    return _Colours(
+        in_cells.astype(np.float64),
+        "tags",
+        categories=names,
+        on_facets=(len(regions) + on_facets).astype(np.float64),
     )
-    return _Colours(in_cells, "tags", categories=names, on_facets=on_facets)
 
 
 def _of_quality(mesh: Mesh, metric: Floats | None) -> _Colours:

@@ -15,6 +15,9 @@ from . import reader
 #: I-DEAS universal files, Nastran's bulk data, and CGNS.
 SUFFIXES = (".unv", ".bdf", ".nas", ".cgns")
 
+#: Longer than any file should take; what is damaged may keep it busy for ever.
+MOST_SECONDS = 600.0
+
 _MISSING = 3
 _PROGRAM = f"""
 import sys
@@ -45,13 +48,19 @@ def read(path: Path) -> RawMesh:
     """
     with tempfile.TemporaryDirectory() as folder:
         converted = Path(folder) / "converted.msh"
-        done = subprocess.run(
-            [sys.executable, "-c", _PROGRAM, str(path.resolve()), str(converted)],
-            capture_output=True,
-            text=True,
-            errors="replace",
-            check=False,
-        )
+        try:
+            done = subprocess.run(
+                [sys.executable, "-c", _PROGRAM, str(path.resolve()), str(converted)],
+                capture_output=True,
+                text=True,
+                errors="replace",
+                check=False,
+                timeout=MOST_SECONDS,
+            )
+        except subprocess.TimeoutExpired as error:
+            raise FormatError(
+                f"cannot read {path}: gmsh was not done with it after {MOST_SECONDS:g} s"
+            ) from error
         if done.returncode == _MISSING:
             raise FormatError(
                 f"cannot read {path}: files {path.suffix} are read by the package gmsh, which is "
