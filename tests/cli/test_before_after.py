@@ -7,7 +7,7 @@ from meshes import square
 import anistar
 from anistar.cli import before_after, main
 from anistar.cli.console import Marked, show_table
-from anistar.remeshing.concerns import level_of
+from anistar.remeshing.report.concerns import level_of
 
 
 @pytest.fixture

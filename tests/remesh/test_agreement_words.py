@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from anistar._core import AgreementOutcome, AgreementStop, StopReason
-from anistar.remeshing.verdict import agreement_text
+from anistar.remeshing.report.verdict import agreement_text
 
 
 def report(outcome, **known):

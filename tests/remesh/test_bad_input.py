@@ -11,8 +11,8 @@ from anistar.base.errors import MeshingError
 from anistar.meshes.mesh import Mesh
 from anistar.metric import MetricError
 from anistar.remeshing.consistency_options import ConsistencyOptions
-from anistar.remeshing.fidelity import tag_measures
 from anistar.remeshing.remesh import RemeshOptions, remesh
+from anistar.remeshing.report.fidelity import tag_measures
 
 
 def damaged(index, tensor):

@@ -13,7 +13,7 @@ from anistar import Mesh, remesh, validate
 from anistar.judging.quality import mean_ratios, metric_lengths
 from anistar.meshes.topology import unique_edges
 from anistar.metric import MetricOptions, from_fields
-from anistar.remeshing.long_edges import longest_edges
+from anistar.remeshing.report.long_edges import longest_edges
 
 FLOOR = 0.1
 

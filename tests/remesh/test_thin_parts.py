@@ -9,7 +9,7 @@ from shapes import uniform
 
 from anistar import Mesh, RemeshOptions, remesh, validate
 from anistar.judging.quality import mean_ratios
-from anistar.remeshing.bad_cells import quality_bound
+from anistar.remeshing.report.bad_cells import quality_bound
 
 
 def strip(n, thickness):

@@ -10,7 +10,7 @@ from scipy.spatial import Delaunay
 
 from anistar import Mesh, RemeshOptions, remesh, validate
 from anistar.judging.quality import mean_ratios
-from anistar.remeshing.bad_cells import worst_cells
+from anistar.remeshing.report.bad_cells import worst_cells
 
 OPTIONS = RemeshOptions(agreement=False)
 

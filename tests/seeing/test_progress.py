@@ -15,7 +15,7 @@ from meshes import square
 from terminal import Terminal
 
 import anistar
-from anistar.base import progress as display
+from anistar.base.progress import tasks as display
 
 PACKAGE = str(Path(anistar.__file__).parents[1])
 
@@ -24,7 +24,7 @@ SECONDS_BEFORE_IT_HANGS = 60.0
 # It goes on when it is told to: as soon as the bars are seen.
 PROGRAM = """
 import contextlib, io, sys
-from anistar.base import progress
+from anistar.base.progress import tasks as progress
 from anistar.base.progress import task
 progress.SECONDS_BEFORE_DISPLAY = 0.0
 kept = io.StringIO()

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 from terminal import Terminal
 
-from anistar.base.screens import LineScreen, Row, TerminalScreen, clock, screen_for
+from anistar.base.progress.screens import LineScreen, Row, TerminalScreen, clock, screen_for
 
 ROWS = [
     Row("outer", "remesh", 0.5, "1 of 2", "", 61.0, 3700.0),

@@ -11,7 +11,7 @@ import anistar
 from anistar import RemeshOptions, _core
 from anistar.base.telling import telling_once
 from anistar.meshes.mesh import Mesh
-from anistar.remeshing.fidelity import measures_of, smooth_shape
+from anistar.remeshing.report.fidelity import measures_of, smooth_shape
 
 
 def remeshed(mesh, h, options=None, **more):

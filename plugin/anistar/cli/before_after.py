@@ -13,9 +13,9 @@ from ..judging.interpolation_error import field_error
 from ..judging.quality import quality
 from ..meshes.fields import Field, as_fields
 from ..meshes.mesh import Mesh
-from ..remeshing.concerns import Level, level_of
-from ..remeshing.fidelity import TagMeasure
 from ..remeshing.report import RemeshReport
+from ..remeshing.report.concerns import Level, level_of
+from ..remeshing.report.fidelity import TagMeasure
 from . import console
 
 _log = logging.getLogger(__name__)

@@ -14,8 +14,8 @@ from rich.text import Text
 
 from ..base.report import to_json
 from ..loops.forecast import Forecast
-from ..remeshing.concerns import Level
 from ..remeshing.report import RemeshReport
+from ..remeshing.report.concerns import Level
 from .streams import complain, readers_may_leave
 
 #: Shorter work is not foretold.

@@ -24,7 +24,7 @@ from ..remeshing.demand import check_targets
 from ..remeshing.options import RemeshOptions
 from ..remeshing.project import Project
 from ..remeshing.remesh import Remeshed
-from ..remeshing.verdict import verdict_line
+from ..remeshing.report.verdict import verdict_line
 from ..transfer import transfer
 from .adapt_options import AdaptOptions
 from .adapt_report import AdaptReport

@@ -24,13 +24,13 @@ from ..metric.base.told import Told
 from ..objects import AnyMesh, made, metric_in, opened
 from .contact import check_curves, check_surfaces
 from .demand import check_demand
-from .fidelity import smooth_shape, surface_deviations, tag_measures
 from .options import RemeshOptions
 from .project import Project, pointwise
 from .ramp import approached, carried
 from .report import RemeshReport, report_of
+from .report.fidelity import smooth_shape, surface_deviations, tag_measures
+from .report.verdict import certificate_for
 from .size_range import check_sizes
-from .verdict import certificate_for
 
 METRIC = "metric"
 

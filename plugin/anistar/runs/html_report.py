@@ -26,7 +26,7 @@ from ..pictures import (
     solution_picture,
     volume_picture,
 )
-from ..remeshing.concerns import Level, level_of
+from ..remeshing.report.concerns import Level, level_of
 from ..views.scene import kept_cells, scene
 from ..views.web_view import script, turning_figure
 from .folder import REPORT, SERIES

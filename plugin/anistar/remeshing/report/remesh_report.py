@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from .. import _core
-from .._core import ConsistencyStop, StopReason
-from ..base.arrays import Floats
-from ..judging.certificate import Certificate, share_of
-from ..meshes.mesh import Mesh
-from ..metric.base.told import Told
-from ..metric.laws.refinement import Refinement
+from ... import _core
+from ..._core import ConsistencyStop, StopReason
+from ...base.arrays import Floats
+from ...judging.certificate import Certificate, share_of
+from ...meshes.mesh import Mesh
+from ...metric.base.told import Told
+from ...metric.laws.refinement import Refinement
 from .bad_cells import BadCell, quality_bound, worst_cells
 from .fidelity import SurfaceDeviation, TagMeasure, shape_warnings
 from .long_edges import LONG_EDGE, LongEdge, longest_edges

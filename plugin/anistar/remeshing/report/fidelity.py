@@ -9,12 +9,12 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from .. import _core
-from ..base.arrays import Floats, Ints, Longs
-from ..base.errors import MeshingError
-from ..meshes.mesh import Mesh
-from ..meshes.mesh_arrays import mesh_arrays
-from ..meshes.topology import (
+from ... import _core
+from ...base.arrays import Floats, Ints, Longs
+from ...base.errors import MeshingError
+from ...meshes.mesh import Mesh
+from ...meshes.mesh_arrays import mesh_arrays
+from ...meshes.topology import (
     cell_volumes,
     edge_lengths,
     facet_measures,
@@ -22,7 +22,7 @@ from ..meshes.topology import (
     facet_table,
     measure_by_tag,
 )
-from .options import RemeshOptions
+from ..options import RemeshOptions
 
 #: A smooth shape lies as far from the given facets as their turns tell, but for this factor:
 #: measured, up to 1.08 on ellipsoids, tori and tubes of few facets, from 1.48 across ridges.

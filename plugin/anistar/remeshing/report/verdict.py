@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from .. import _core
-from .._core import AgreementOutcome, AgreementReport, AgreementStop, ConsistencyStop
-from ..base.arrays import Floats
-from ..judging.certificate import Certificate, certificate_of
-from ..judging.metric_mesh import MetricMesh, Proof, SurfaceMesh
-from ..meshes.mesh import Mesh
-from .options import RemeshOptions
+from ... import _core
+from ..._core import AgreementOutcome, AgreementReport, AgreementStop, ConsistencyStop
+from ...base.arrays import Floats
+from ...judging.certificate import Certificate, certificate_of
+from ...judging.metric_mesh import MetricMesh, Proof, SurfaceMesh
+from ...meshes.mesh import Mesh
+from ..options import RemeshOptions
 
 #: Why its rounds ended.
 STOPS = {

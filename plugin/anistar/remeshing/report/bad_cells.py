@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.arrays import Floats
-from ..judging.quality import mean_ratios
-from ..meshes.mesh import Mesh
+from ...base.arrays import Floats
+from ...judging.quality import mean_ratios
+from ...meshes.mesh import Mesh
 
 #: Mean ratio in the metric below which a cell is named in any case.
 BAD_QUALITY = 1e-3

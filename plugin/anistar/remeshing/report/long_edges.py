@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Floats
-from ..judging.quality import metric_lengths
-from ..meshes.mesh import Mesh
-from ..meshes.topology import unique_edges
+from ...base.arrays import Floats
+from ...judging.quality import metric_lengths
+from ...meshes.mesh import Mesh
+from ...meshes.topology import unique_edges
 
 #: Length in the metric above which an edge is named.
 LONG_EDGE = 2.0
