@@ -39,7 +39,7 @@ class RowKeys:
         self._n = max(n_points, 1)
         self._pairs: Longs | None = None
         if rows.shape[1] == 3 and self._n * self._n * self._n >= 2**63:
-            self._pairs = np.unique(_horner(np.sort(rows, axis=1)[:, :2], self._n))
+            self._pairs = _distinct(_horner(np.sort(rows, axis=1)[:, :2], self._n))
 
     def encode(self, rows: Ints) -> Longs:
         """Return the keys of `rows`; -1 where the row cannot be one of the known rows."""
@@ -168,12 +168,20 @@ def neighbours(cells: Ints, n_points: int) -> Ints:
     return across
 
 
+def _distinct(keys: Longs) -> Longs:
+    """Return keys in ascending order, each once: by sorting, where NumPy hashes millions slowly."""
+    ordered = np.sort(keys)
+    is_first = np.ones(len(ordered), dtype=bool)
+    is_first[1:] = ordered[1:] != ordered[:-1]
+    return ordered[is_first]
+
+
 def unique_edges(simplices: Ints, n_points: int) -> Ints:
     """Return the (e, 2) edges of the simplices, each once, smaller index first, sorted."""
     pairs = np.concatenate(
         [simplices[:, [i, j]] for i, j in itertools.combinations(range(simplices.shape[1]), 2)]
     )
-    keys = np.unique(_horner(np.sort(pairs, axis=1), max(n_points, 1)))
+    keys = _distinct(_horner(np.sort(pairs, axis=1), max(n_points, 1)))
     return np.stack(np.divmod(keys, max(n_points, 1)), axis=1).astype(np.int32)
 
 
