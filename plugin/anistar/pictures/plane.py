@@ -16,6 +16,7 @@ from ..base.extras import install_command
 from ..judging.certificate import Certificate
 from ..meshes.mesh import Mesh
 from ..meshes.topology import unique_edges
+from ..objects import AnyMesh, as_mesh
 
 try:
     from matplotlib.collections import LineCollection, PolyCollection
@@ -35,20 +36,21 @@ _INCHES = 11.0
 _DPI = 150
 
 
-def mesh_picture(path: Target, mesh: Mesh, *, box: Box | None = None, title: str = "") -> None:
+def mesh_picture(path: Target, mesh: AnyMesh, *, box: Box | None = None, title: str = "") -> None:
     """Draw the edges of a mesh, its boundary and interfaces stronger.
 
     Parameters
     ----------
     path : path or binary file
         A PNG, SVG or PDF file.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         A 2D mesh.
     box : (x_min, x_max, y_min, y_max), optional
         Part to show; all of it by default.
     title : str
         Above the mesh: the verdict on its stars, say.
     """
+    mesh = as_mesh(mesh)
     figure, axes = _canvas(mesh, box)
     axes.set_title(title)
     _draw_edges(axes, mesh, width=0.35)
@@ -58,7 +60,7 @@ def mesh_picture(path: Target, mesh: Mesh, *, box: Box | None = None, title: str
 
 def certificate_picture(
     path: Target,
-    mesh: Mesh,
+    mesh: AnyMesh,
     certificate: Certificate,
     *,
     box: Box | None = None,
@@ -69,7 +71,7 @@ def certificate_picture(
     ----------
     path : path or binary file
         A PNG, SVG or PDF file.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         A 2D mesh.
     certificate : Certificate
         The certificate of this mesh.
@@ -81,6 +83,7 @@ def certificate_picture(
     ValueError
         If the certificate is of another mesh.
     """
+    mesh = as_mesh(mesh)
     if len(certificate.simplex_ok) != mesh.n_cells:
         raise ValueError(
             f"the certificate is of {len(certificate.simplex_ok)} triangles, "
@@ -97,7 +100,7 @@ def certificate_picture(
 
 def solution_picture(
     path: Target,
-    mesh: Mesh,
+    mesh: AnyMesh,
     values: ArrayLike,
     *,
     label: str = "",
@@ -109,7 +112,7 @@ def solution_picture(
     ----------
     path : path or binary file
         A PNG, SVG or PDF file.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         A 2D mesh.
     values : (n,) float array
         The field at the points.
@@ -118,13 +121,14 @@ def solution_picture(
     box : (x_min, x_max, y_min, y_max), optional
         Part to show; all of it by default.
     """
+    mesh = as_mesh(mesh)
     figure, axes = _canvas(mesh, box)
     _draw_solution(figure, axes, mesh, values, label)
     _draw_boundary(axes, mesh)
     save(figure, path)
 
 
-def metric_picture(path: Target, mesh: Mesh, M: Floats, *, box: Box | None = None) -> None:
+def metric_picture(path: Target, mesh: AnyMesh, M: Floats, *, box: Box | None = None) -> None:
     """Draw the metric at the points as ellipses that neighbours nearly touch.
 
     Each ellipse is ``(x - p)^T M (x - p) = 1/4``: a unit edge joins two of them.
@@ -133,13 +137,14 @@ def metric_picture(path: Target, mesh: Mesh, M: Floats, *, box: Box | None = Non
     ----------
     path : path or binary file
         A PNG, SVG or PDF file.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         A 2D mesh.
     M : (n, 2, 2) float64
         The metric at the points, in 1 / length**2.
     box : (x_min, x_max, y_min, y_max), optional
         Part to show; all of it by default.
     """
+    mesh = as_mesh(mesh)
     figure, axes = _canvas(mesh, box)
     _draw_ellipses(axes, mesh, M)
     _draw_boundary(axes, mesh)
@@ -148,7 +153,7 @@ def metric_picture(path: Target, mesh: Mesh, M: Floats, *, box: Box | None = Non
 
 def overview_picture(
     path: Target,
-    mesh: Mesh,
+    mesh: AnyMesh,
     values: ArrayLike,
     metric: tuple[Mesh, Floats],
     *,
@@ -160,7 +165,7 @@ def overview_picture(
     ----------
     path : path or binary file
         A PNG, SVG or PDF file.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         A 2D mesh.
     values : (n,) float array
         The solution at the points.
@@ -169,6 +174,7 @@ def overview_picture(
     label : str
         Name and unit beside the colour bar.
     """
+    mesh = as_mesh(mesh)
     figure, panels = _canvas(mesh, None, panels=3)
     _draw_solution(figure, panels[0], mesh, values, label)
     _draw_edges(panels[1], mesh, width=0.3)

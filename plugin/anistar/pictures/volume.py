@@ -12,6 +12,7 @@ from ..base.arrays import Floats
 from ..base.extras import install_command
 from ..meshes.mesh import Mesh
 from ..meshes.topology import boundary_facets
+from ..objects import AnyMesh, as_mesh
 from .plane import INK, Target, save
 
 try:
@@ -37,7 +38,7 @@ _DARKEST = 0.6
 
 def volume_picture(
     path: Target,
-    mesh: Mesh,
+    mesh: AnyMesh,
     values: ArrayLike,
     *,
     view: tuple[float, float, float] = VIEW,
@@ -50,7 +51,7 @@ def volume_picture(
     ----------
     path : path or binary file
         A PNG, SVG or PDF file.
-    mesh : Mesh
+    mesh : Mesh or other mesh object
         A 3D mesh.
     values : (n,) float array
         The field at the points.
@@ -66,6 +67,7 @@ def volume_picture(
     ValueError
         If the mesh is not 3D, if no cell is kept, or if one looks straight up or down.
     """
+    mesh = as_mesh(mesh)
     figure = Figure(figsize=(_INCHES, 0.85 * _INCHES), layout="constrained")
     axes = _bare_axes(figure, 1)
     _draw_volumes(figure, axes, [(mesh, values, keep)], np.asarray(view, dtype=np.float64), label)

@@ -15,6 +15,8 @@ from ..judging.certificate import known_certificate
 from ..loops.loop import Step
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
+from ..metric.base.given import AnyFields
+from ..objects import AnyMesh
 
 __all__ = ["SeriesWriter", "item_of", "member", "write_index", "write_series"]
 
@@ -80,7 +82,7 @@ class SeriesWriter:
         require_pvd(self.path)
         self._times: list[float] = []
 
-    def add(self, time: float, mesh: Mesh, fields: Mapping[str, Field | ArrayLike]) -> None:
+    def add(self, time: float, mesh: AnyMesh, fields: AnyFields = None) -> None:
         """Write one more mesh with fields; the mesh may be another than the one before."""
         write(member(self.path, len(self._times)), mesh, fields)
         self._times.append(float(time))
