@@ -164,3 +164,17 @@ def test_curved_meshes_of_ngsolve_give_their_corners():
     assert held.geometry is None
     M = anistar.metric.from_sizes(np.full(straight.n_points, 0.15))
     assert abs(radii(anistar.remesh(other, M).mesh) - 1).max() < 1e-5
+
+
+def test_reports_say_what_was_taken_of_an_object():
+    other = skfem_disc()
+    u = np.tanh(9 * objects.as_mesh(other).points[:, 0])
+    done = anistar.adapt(other, u, target_complexity=60)
+    assert anistar.validate(done.mesh) == []
+    told = " ".join(done.report.remesh.reading)
+    assert "64 element(s) of second order: their corners are the mesh" in told
+    assert "curved: they are a geometry of their own" in told
+    assert done.report.as_dict()["remesh"]["reading"] == list(done.report.remesh.reading)
+    quads = anistar.remesh(skfem.MeshQuad().refined(2), 0.2)
+    assert quads.report.reading == ("16 quadrilateral(s) split into triangles",)
+    assert anistar.remesh(quads.mesh, 0.2).report.reading == ()

@@ -7,7 +7,8 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
-from meshes import cube, square, two_region_cube, two_regions
+from meshes import cube, slit, square, two_region_cube, two_regions
+from remesh3d.domains import touching_cubes
 
 import anistar
 from anistar import Mesh, objects
@@ -41,6 +42,25 @@ def test_a_mesh_keeps_points_and_names_through_every_form(form, make):
     assert anistar.validate(again, reference=None if form in BARE else mesh) == []
     assert np.array_equal(again.points, mesh.points)
     assert tags_by_name(again) == tags_by_name(mesh)
+
+
+def moved(mesh):
+    return anistar.Mesh(**{**mesh.arrays(), "points": mesh.points + 1e6})
+
+
+@pytest.mark.parametrize("form", HOLDING_FIELDS + BARE)
+@pytest.mark.parametrize(
+    "make",
+    [slit, lambda: touching_cubes((1, 1, 0)), lambda: moved(square()), lambda: moved(cube())],
+    ids=["slit", "touching in an edge", "far away", "far away in space"],
+)
+def test_other_bodies_come_back_as_they_are(form, make):
+    mesh = make()
+    again = objects.as_mesh(objects.made(mesh, {}, form))
+    assert anistar.validate(again) == []
+    assert np.array_equal(again.points, mesh.points)
+    assert np.array_equal(np.sort(again.cells, axis=1), np.sort(mesh.cells, axis=1))
+    assert again.n_facets == mesh.n_facets
 
 
 @pytest.mark.parametrize("form", HOLDING_FIELDS)

@@ -201,7 +201,7 @@ def _content(domain: Any, tags: _Tags) -> Content:
     if tags.vertices is not None:
         raw.corners = _marked(domain, 0, tags.vertices).rows.ravel()
     mesh, _, report = assembled(raw, Path("dolfinx.mesh.Mesh"))
-    return Content(mesh, {}, report.geometry)
+    return Content(mesh, {}, report.geometry, report.warnings)
 
 
 def _marked(domain: Any, dim: int, tags: Any) -> Block:

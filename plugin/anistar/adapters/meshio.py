@@ -110,7 +110,7 @@ def _content(other: Any) -> Content:
     if all(block.tags is None for block in raw.blocks):
         _tag_by_sets(raw, other.cell_sets)
     mesh, fields, report = assembled(raw, _SOURCE)
-    return Content(mesh, fields, report.geometry)
+    return Content(mesh, fields, report.geometry, report.warnings)
 
 
 def _raw(other: Any) -> RawMesh:

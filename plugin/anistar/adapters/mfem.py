@@ -126,7 +126,7 @@ def _content(other: Any) -> Content:
     if other.GetNodes() is not None:
         _take_nodes(raw, other)
     mesh, _, report = assembled(raw, Path("mfem.Mesh"))
-    return Content(mesh, {}, report.geometry)
+    return Content(mesh, {}, report.geometry, report.warnings)
 
 
 def _blocks(types: list[int], rows: list[list[int]], tags: Ints) -> list[Block]:

@@ -108,7 +108,7 @@ def _content(other: Any) -> Content:
         named = [k for k, name in enumerate(called, start=1) if name not in _NAMELESS]
         _add(raw, lines[np.isin(lines["index"], named)], 1, called)
     mesh, _, report = assembled(raw, Path("ngsolve.Mesh"))
-    return Content(mesh, {}, report.geometry)
+    return Content(mesh, {}, report.geometry, report.warnings)
 
 
 def _add(raw: RawMesh, elements: AnyArray, dim: int, called: tuple[str, ...]) -> None:

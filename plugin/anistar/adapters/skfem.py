@@ -108,7 +108,7 @@ def _content(other: Any) -> Content:
         raw.points = raw.points[: other.nvertices]
         raw.warnings.append("cells of second order: their edges are taken as straight")
     mesh, _, report = assembled(raw, Path(f"skfem.{type(other).__name__}"))
-    return Content(mesh, {}, report.geometry)
+    return Content(mesh, {}, report.geometry, report.warnings)
 
 
 def point_values(basis: Any, unknowns: ArrayLike) -> Floats:

@@ -13,11 +13,23 @@ from . import console
 
 @dataclass(frozen=True)
 class Input:
-    """A mesh, the fields to carry over, and a geometry, None for the mesh itself."""
+    """A mesh to remesh.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    fields : dict of str to Field
+        To carry over.
+    geometry : Mesh or None
+        None for the mesh itself.
+    remarks : tuple of str
+        What was changed to read it.
+    """
 
     mesh: Mesh
     fields: dict[str, Field]
     geometry: Mesh | None
+    remarks: tuple[str, ...]
 
 
 def read_input(path: str, geometry: str | None = None, *, beside_json: bool) -> Input:
@@ -41,7 +53,7 @@ def read_input(path: str, geometry: str | None = None, *, beside_json: bool) -> 
         shape = of_geometry.geometry or given
     elif shape is not None:
         console.note(f"the curved edges of {path} are the geometry", beside_json=beside_json)
-    return Input(mesh, without_certificate(fields), shape)
+    return Input(mesh, without_certificate(fields), shape, report.warnings)
 
 
 def read_fields(path: str) -> tuple[Mesh, dict[str, Field]]:

@@ -292,7 +292,7 @@ def write_metric(path: PathLike, mesh: Mesh, M: ArrayLike) -> None:
 
 def _content(path: Any) -> Content:
     mesh, fields, report = read_with_report(path)
-    return Content(mesh, fields, report.geometry)
+    return Content(mesh, fields, report.geometry, report.warnings)
 
 
 register(Form(name="path", accepts=lambda obj: isinstance(obj, str | os.PathLike), read=_content))

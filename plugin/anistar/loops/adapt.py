@@ -41,6 +41,11 @@ class Adapted(Plotted, Told):
     metric: Floats
     report: AdaptReport
 
+    def after_reading(self, remarks: tuple[str, ...]) -> Adapted:
+        """Return it with what was changed to read the mesh in its report."""
+        told = replace(self.report.remesh, reading=remarks)
+        return replace(self, report=replace(self.report, remesh=told))
+
     def to(self, like: AnyMesh) -> Any:
         """Return the mesh with its fields in another form, see `anistar.objects.made`."""
         return made(self.mesh, self.fields, like)
@@ -115,6 +120,8 @@ def adapt(
         options = replace(options, metric_fields=names)
     shape = held.outline(geometry)
     done = adapt_to(held.mesh, given.fields, options, geometry=shape, project=project)
+    if held.remarks:
+        done = done.after_reading(held.remarks)
     return done if like is None else done.to(like)
 
 

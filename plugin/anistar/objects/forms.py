@@ -36,11 +36,14 @@ class Content(NamedTuple):
         The fields in the object; empty for forms that have none.
     geometry : Mesh or None
         A finer mesh through the curved edges of the object, where it has such.
+    remarks : tuple of str
+        What was changed to read it: cells that were split, corners that were taken.
     """
 
     mesh: Mesh
     fields: dict[str, Field]
     geometry: Mesh | None = None
+    remarks: tuple[str, ...] = ()
 
     def outline(self, geometry: AnyMesh | None) -> Mesh:
         """Return the mesh whose facets are the geometry: that given, else that of the object."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -50,6 +50,10 @@ class Remeshed(Plotted, Told):
     mesh: Mesh
     metric: Floats
     report: RemeshReport
+
+    def after_reading(self, remarks: tuple[str, ...]) -> Remeshed:
+        """Return it with what was changed to read the mesh in its report."""
+        return replace(self, report=replace(self.report, reading=remarks))
 
     def to(self, like: AnyMesh) -> Any:
         """Return the mesh with its metric in another form, see `anistar.objects.made`."""
@@ -125,6 +129,8 @@ def remesh(
     options = chosen(RemeshOptions, options, settings)
     shape = held.outline(geometry)
     done = _remeshed(held.mesh, metric_in(held, M), options, shape, project)
+    if held.remarks:
+        done = done.after_reading(held.remarks)
     return done if like is None else done.to(like)
 
 

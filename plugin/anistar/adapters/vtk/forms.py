@@ -27,7 +27,7 @@ def _is_pyvista(obj: object) -> bool:
 
 def _read(data: Any) -> Content:
     mesh, fields, report = from_vtk_with_report(data)
-    return Content(mesh, fields, report.geometry)
+    return Content(mesh, fields, report.geometry, report.warnings)
 
 
 def _make(mesh: Mesh, fields: Mapping[str, Any], like: Any) -> Any:

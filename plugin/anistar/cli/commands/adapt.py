@@ -66,6 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
             before.append(measured)
 
     done = adapt_to(given.mesh, given.fields, options, geometry=given.geometry, foretell=foretold)
+    done = done.after_reading(given.remarks)
     inputs = (arguments.input, arguments.geometry)
     replaced = replaced_inputs(inputs, output, metric_output)
     write(output, done.mesh, done.fields | arrays_for(output, done.mesh, done.metric))

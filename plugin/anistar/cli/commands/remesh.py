@@ -62,6 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
         expected = forecast(estimate(mesh, M), mesh.dim, options.remesh)
         console.say_forecast(expected, beside_json=arguments.json)
     done = remesh(mesh, M, options.remesh, geometry=given.geometry)
+    done = done.after_reading(given.remarks)
     # The solution beside a medit mesh is the metric itself, not a field to carry.
     carried = {} if source == beside else given.fields
     fields = transfer(mesh, carried, done.mesh, options.transfer).fields

@@ -81,7 +81,7 @@ class RemeshReport(Told):
         facet tag; empty where all are straight, and with `project`, whose shape is its own.
     warnings : tuple of str
         Where the shape of the new mesh may not be what is meant: a deviation that no smooth shape
-        has, or a measure that changed by more than 1 %.
+        has, or a measure that changed by more than 1 %; and that a budget ended the work.
     counts : dict of str to float
         Operations made; ``consistency_moves`` are the vertices that Algorithm 2 moved in 3D, and
         ``star_set_sites`` those of the star set when ``until_consistent="pure"`` ended there;
@@ -93,6 +93,9 @@ class RemeshReport(Told):
         ``curved`` is 1 when some surface or ridge is curved.
     seconds : dict of str to float
         Wall time of each phase.
+    reading : tuple of str
+        What was changed of the mesh object or file to read it, such as cells that were split or
+        curved edges that became the geometry; empty for a `Mesh`.
     """
 
     converged: bool
@@ -117,6 +120,7 @@ class RemeshReport(Told):
     warnings: tuple[str, ...]
     counts: dict[str, float]
     seconds: dict[str, float]
+    reading: tuple[str, ...] = ()
 
     def _figures(self) -> dict[str, Any]:
         figures = {
