@@ -570,3 +570,11 @@ def planar_facets(
     rounding: float,
 ) -> NDArray[numpy.int32]:
     """The planar facet of each triangle of a surface."""
+
+def surface_loops(
+    points: NDArray[numpy.float64],
+    triangles: NDArray[numpy.int32],
+    owners: NDArray[numpy.int32],
+    n_facets: int,
+) -> tuple[NDArray[numpy.int32], NDArray[numpy.int64], NDArray[numpy.int64]]:
+    """The loops around facets of triangles: (indices, loop_starts, facet_starts)."""

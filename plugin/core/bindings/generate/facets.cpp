@@ -1,6 +1,7 @@
 #include "bindings/bind.h"
 #include "bindings/support/geometry.h"
 #include "generate/facets/planar_facets.h"
+#include "generate/facets/surface_loops.h"
 #include "generate/facets/triangulated_facets.h"
 
 namespace anistar::bindings {
@@ -42,6 +43,21 @@ nb::object planar(const Array2<double> &points, const Array2<Index> &triangles,
   return nb::cast(owned(std::move(facets), {n}));
 }
 
+nb::tuple loops_of(const Array2<double> &points, const Array2<Index> &triangles,
+                   const Array1<Index> &owners, std::size_t n_facets) {
+  SurfaceLoops loops;
+  {
+    nb::gil_scoped_release release;
+    loops = surface_loops(points_of<3>(points), facets_of<3>(triangles),
+                          indices_of(owners), n_facets);
+  }
+  const std::size_t n_indices = loops.indices.size(),
+                    n_loops = loops.loop_starts.size();
+  return nb::make_tuple(owned(std::move(loops.indices), {n_indices}),
+                        owned(std::move(loops.loop_starts), {n_loops}),
+                        owned(std::move(loops.facet_starts), {n_facets + 1}));
+}
+
 } // namespace
 
 void bind_facets(nb::module_ &module) {
@@ -56,6 +72,11 @@ void bind_facets(nb::module_ &module) {
              nb::arg("triangles").noconvert(), nb::arg("tags").noconvert(),
              nb::arg("degrees"), nb::arg("distance"), nb::arg("rounding"),
              "The planar facet of each triangle of a surface.");
+  module.def("surface_loops", &loops_of, nb::arg("points").noconvert(),
+             nb::arg("triangles").noconvert(), nb::arg("owners").noconvert(),
+             nb::arg("n_facets"),
+             "The loops around facets of triangles: (indices, loop_starts, "
+             "facet_starts).");
 }
 
 } // namespace anistar::bindings
