@@ -281,6 +281,8 @@ class ShapeKind(enum.Enum):
 
     polyhedron = 1
 
+    faceted = 2
+
 class DomainShape:
     """What the facets of a geometry mean."""
 

@@ -152,7 +152,7 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "shape": (
         str,
         "smooth (default): the facets sample smooth curves and surfaces; "
-        "polyhedron: they are the domain",
+        "polyhedron: they are the domain; faceted: the same, flat to the accuracy of floats",
     ),
     "ridge_angle": (float, "angle in degrees from which a corner is kept (Mmg: -ar)"),
     "max_vertices": (int, "stop at this number of vertices"),

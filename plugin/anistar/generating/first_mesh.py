@@ -15,7 +15,7 @@ from ..metric.kernels.elementary import exp, log
 from .plc import PLC
 
 #: Two segments that meet at a point are one line if the sine of the angle between is less.
-STRAIGHT = 1e-9
+STRAIGHT = 1e-10
 
 
 class Pieces(Protocol):

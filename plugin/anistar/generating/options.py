@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 import numpy as np
 
 from ..metric.base.by_name import by_name, require_numbers
+from ..metric.base.names import Tag
 from ..remeshing.options import RemeshOptions
 
 Method = Literal["remesh", "refine", "constrained"]
@@ -50,6 +51,9 @@ class GenerateOptions:
         proves an end above 2 in space, and above 1.414 in the plane; less is tried under a guard.
     sliver_dihedral : float
         Of "refine", in degrees: a flatter tetrahedron is a sliver. 0 eliminates none.
+    size_at : mapping of str or int to float
+        Largest sizes at facets (in 2D segments) and in regions, by their names, or facets by their
+        tags; at facets sizes grow from there.
     growth : float
         Factor between the sizes of neighbouring edges, where sizes are not given everywhere.
     follow_widths : bool, optional
@@ -74,6 +78,7 @@ class GenerateOptions:
     repair: Repair = "none"
     bound: float = 2.0
     sliver_dihedral: float = 12.0
+    size_at: Mapping[Tag, float] = field(default_factory=dict)
     growth: float = 1.5
     follow_widths: bool | None = None
     max_vertices: int | None = None
@@ -100,6 +105,7 @@ class GenerateOptions:
     def as_remesh_options(self, *, max_seconds: float | None = None) -> RemeshOptions:
         """Return what `remesh` is told; the facets of polyhedra are told apart by their tags."""
         return RemeshOptions(
+            shape="smooth" if self.shape == "smooth" else "faceted",
             ridge_angle=self.ridge_angle,
             max_refinement=None,
             max_vertices=self.max_vertices,

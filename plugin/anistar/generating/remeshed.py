@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..base.arrays import Floats
@@ -15,7 +13,7 @@ from ..remeshing.report import RemeshReport
 from .first_mesh import FirstMesh
 from .options import GenerateOptions
 from .stages import Clock, Stage
-from .wishes import Uniform, Wish
+from .wishes import Wish
 
 #: A wish that is not uniform is looked at on so many meshes at most.
 MOST_PASSES = 6
@@ -34,7 +32,7 @@ def remeshed(first: FirstMesh, wish: Wish, options: GenerateOptions, clock: Cloc
     for number in range(MOST_PASSES):
         before = mesh.n_points
         metric = wish.metric_on(mesh)
-        if number == 0 and not isinstance(wish, Uniform):
+        if number == 0 and wish.may_surprise:
             metric = _looked_at_closely(mesh, metric)
         budget = options.as_remesh_options(max_seconds=clock.seconds_left())
         done = remesh(mesh, metric, budget, geometry=geometry)
@@ -52,7 +50,7 @@ def remeshed(first: FirstMesh, wish: Wish, options: GenerateOptions, clock: Cloc
 
 
 def _is_last(wish: Wish, report: RemeshReport, before: int, mesh: Mesh, number: int) -> bool:
-    if isinstance(wish, Uniform) or not report.converged:
+    if wish.is_settled or not report.converged:
         return True
     return number > 0 and abs(mesh.n_points - before) <= SETTLED * before
 

@@ -17,6 +17,7 @@ from .widths import local_widths
 from .wishes import (
     Carried,
     Evaluated,
+    Named,
     Surrounding,
     Together,
     Uniform,
@@ -65,6 +66,8 @@ def wish_for(
     if follows:
         shape = first.smooth() if options.shape == "smooth" else first.mesh
         on_surface = np.minimum(on_surface, local_widths(shape))
+    if options.size_at:
+        wishes.append(Named(first, options.size_at, options.growth))
     in_regions = {r.tag: r.size for r in first.plc.regions if r.size is not None}
     if np.isfinite(largest) or np.isfinite(on_surface).any() or in_regions:
         finite = on_surface[np.isfinite(on_surface)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,16 +13,37 @@ from .. import _core
 from ..base.arrays import Floats
 from ..meshes.mesh import Mesh
 from ..metric import check_metric, from_sizes, graded, intersected
+from ..metric.base.mesh import diameter
+from ..metric.base.names import Tag
 from ..metric.kernels.elementary import exp, log
+from ..metric.sources.size_at import sizes_at
 from ..objects import AnyMesh, metric_in, opened
 from ..transfer import transfer
-
+from .first_mesh import FirstMesh
 
 METRIC = "metric"
 
 
 class Wish(Protocol):
-    """A law of sizes."""
+    """A law of sizes.
+
+    Attributes
+    ----------
+    is_settled : bool
+        It asks the same of every mesh of the domain.
+    may_surprise : bool
+        It may ask for something between the points of a coarse mesh that is not seen at them.
+    """
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether it asks the same of every mesh."""
+        ...
+
+    @property
+    def may_surprise(self) -> bool:
+        """Whether it may."""
+        ...
 
     def metric_on(self, mesh: Mesh) -> Floats:
         """Return the metric (n, d, d) that is wished for at the points of a mesh."""
@@ -34,6 +55,9 @@ class Uniform:
     """One size everywhere."""
 
     size: float
+
+    is_settled: ClassVar[bool] = True
+    may_surprise: ClassVar[bool] = False
 
     def metric_on(self, mesh: Mesh) -> Floats:
         """Return the same tensor at all points."""
@@ -52,6 +76,9 @@ class Evaluated:
 
     function: Callable[[Floats], ArrayLike]
 
+    is_settled: ClassVar[bool] = False
+    may_surprise: ClassVar[bool] = True
+
     def metric_on(self, mesh: Mesh) -> Floats:
         """Return the metric at the points, evaluated there."""
         return metric_of(self.function(mesh.points.copy()), mesh.n_points, mesh.dim, "the function")
@@ -63,6 +90,9 @@ class Carried:
 
     mesh: Mesh
     metric: Floats
+
+    is_settled: ClassVar[bool] = False
+    may_surprise: ClassVar[bool] = True
 
     def metric_on(self, mesh: Mesh) -> Floats:
         """Return the metric interpolated by its logarithm; outside, that of the nearest point."""
@@ -95,6 +125,9 @@ class Surrounding:
     largest: float
     growth: float
 
+    is_settled: ClassVar[bool] = False
+    may_surprise: ClassVar[bool] = False
+
     def metric_on(self, mesh: Mesh) -> Floats:
         """Return the isotropic metric of the sizes, graded on the mesh."""
         sizes = np.full(mesh.n_points, self.largest)
@@ -116,10 +149,45 @@ class Surrounding:
 
 
 @dataclass(frozen=True)
+class Named:
+    """Sizes at facets and regions that are called by name, growing from facets.
+
+    Attributes
+    ----------
+    first : FirstMesh
+        Knows the names.
+    sizes : mapping of str or int to float
+    growth : float
+    """
+
+    first: FirstMesh
+    sizes: Mapping[Tag, float]
+    growth: float
+
+    is_settled: ClassVar[bool] = False
+    may_surprise: ClassVar[bool] = False
+
+    def metric_on(self, mesh: Mesh) -> Floats:
+        """Return the isotropic metric of the sizes at the points of a mesh with numbered facets."""
+        sizes = sizes_at(self.first.tagged(mesh), self.sizes, self.growth)
+        return from_sizes(np.minimum(sizes, diameter(mesh)), mesh.dim)
+
+
+@dataclass(frozen=True)
 class Together:
     """Several wishes, each of which is kept."""
 
     wishes: Sequence[Wish]
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether all are."""
+        return all(wish.is_settled for wish in self.wishes)
+
+    @property
+    def may_surprise(self) -> bool:
+        """Whether one may."""
+        return any(wish.may_surprise for wish in self.wishes)
 
     def metric_on(self, mesh: Mesh) -> Floats:
         """Return the intersection of the metrics."""
