@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from typing import Any, overload
 
 import numpy as np
 
-from ..base.arrays import AnyArray, Ints
+from .. import _core
+from ..base.arrays import AnyArray, Floats, Ints
 from ..meshes.mesh import as_int32
 
 Loop = tuple[int, ...]
@@ -53,15 +55,47 @@ class FacetLoops(Sequence[Loops]):
         for number, facet in enumerate(facets):
             loops += _loops_in(facet, f"facets[{number}]")
             n_loops.append(len(loops))
-        lengths = [0, *map(len, loops)]
+        lengths = np.array([0, *map(len, loops)], np.int64)
         indices = np.concatenate(loops) if loops else np.zeros(0, np.int32)
-        return cls(indices, np.cumsum(lengths), np.asarray(n_loops))
+        return cls(indices, np.cumsum(lengths), np.array(n_loops, np.int64))
 
     @classmethod
     def _of_rows(cls, rows: Ints) -> FacetLoops:
         n_rows, width = rows.shape
-        starts = np.arange(n_rows + 1)
+        starts = np.arange(n_rows + 1, dtype=np.int64)
         return cls(rows.ravel(), starts * width, starts)
+
+    @property
+    def loops(self) -> FacetLoops:
+        """The facets themselves."""
+        return self
+
+    @property
+    def inner_edges(self) -> Ints:
+        """The edges (k, 2) within facets that are given with them."""
+        starts = self.loop_starts[:-1][np.diff(self.loop_starts) == 2]
+        return np.stack([self.indices[starts], self.indices[starts + 1]], axis=1)
+
+    def triangulated(self, points: Floats, edges: Ints, flatness: float) -> tuple[Ints, Ints]:
+        """Return the triangles of the facets, and the facet of each.
+
+        Parameters
+        ----------
+        points : (n, 3) float64
+        edges : (e, 2) int32
+            Those between points of a facet become edges of its triangles.
+        flatness : float
+            The largest distance of a point from the plane of its facet.
+
+        Raises
+        ------
+        ValueError
+            If a facet is no planar polygon; names the facet.
+        """
+        triangles, owners, _ = _core.triangulated_facets(
+            points, self.indices, self.loop_starts, self.facet_starts, edges, flatness
+        )
+        return triangles, owners
 
     def __len__(self) -> int:
         return len(self.facet_starts) - 1
@@ -76,8 +110,7 @@ class FacetLoops(Sequence[Loops]):
         facet = range(len(self))[at]
         bounds = self.loop_starts[self.facet_starts[facet] : self.facet_starts[facet + 1] + 1]
         return tuple(
-            tuple(self.indices[start:end].tolist())
-            for start, end in zip(bounds[:-1], bounds[1:], strict=True)
+            tuple(self.indices[start:end].tolist()) for start, end in itertools.pairwise(bounds)
         )
 
     def __iter__(self) -> Iterator[Loops]:

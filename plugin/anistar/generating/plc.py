@@ -1,31 +1,45 @@
-"""The piecewise linear complex: points, facets, segments, regions and holes, with tags and names."""
+"""The piecewise linear complex: points, facets and segments, with tags, names and regions."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, InitVar, dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.arrays import AnyArray, Floats, Ints
-from ..meshes.mesh import as_int32
+from ..base.arrays import Floats, Ints
+from ..meshes.svg import drawing_of
 from ..metric.base.told import Told
+from .borders import borders_of
 from .facet_loops import FacetLoops, Loops
-from .planar_facets import FLAT_ANGLE, FLATNESS, planar_facets
+from .planar_facets import FLAT_ANGLE, FLATNESS, diagonal, planar_facets
+from .plc_arrays import (
+    Names,
+    as_edges,
+    as_holes,
+    as_names,
+    as_points,
+    as_points_kept,
+    as_regions,
+    as_rows,
+    as_tags,
+    require_in_range,
+)
 from .region import Region
 from .segments import segments_of
-from .triangulated_facets import triangulated
+from .surface_facets import SurfaceFacets
 
+# Optional arrays are never None once constructed, so the fields keep their array types.
 _NOT_GIVEN: Any = None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PLC(Told):
     """The geometry of a domain, in 2D or 3D, of which a mesh can be generated.
 
-    Everything is checked at construction but where facets meet, which `anistar.check_plc` does.
+    Everything is checked at construction but how facets meet, which `anistar.check_plc` does.
     All arrays are copies and read-only.
 
     Parameters
@@ -33,9 +47,10 @@ class PLC(Told):
     points : (n, d) float array
         Coordinates, d = 2 or 3.
     facets : sequence of f facets, optional
-        In 3D only. A facet is a sequence of point indices, or of such loops: the outer one first,
-        then holes, and edges (two points) and points (one) that lie in the facet. An (f, 3) array
-        of triangles serves as well.
+        In 3D only. A facet is a sequence of point indices, or of such loops, the outer one first.
+        Loops of three or more points after it are holes, those of two points edges in the facet,
+        those of one point points in it. What an odd number of loops enclose is the facet. An
+        (f, 3) array of triangles serves as well.
     facet_tags : (f,) int array, optional
         0 by default.
     edges : (e, 2) int array, optional
@@ -47,17 +62,20 @@ class PLC(Told):
     names : mapping of (dim, tag) to str, optional
         Names of tags; `dim` is that of the tagged entities.
     regions : sequence of Region, optional
+        Their names become names of tags.
     holes : (h, d) float array, optional
         Points in what is to be left empty.
+    flatness : float, optional
+        How far a point may lie from the plane of its facet, in diagonals of all points.
 
     Attributes
     ----------
     triangles : (t, 3) int32
-        The facets, triangulated.
+        The facets, triangulated, and turned as their outer loops.
     triangle_facets : (t,) int32
         The facet of each triangle.
     segments : (s, 2) int32
-        The borders of facets and the edges given, each once, sorted by their points.
+        The borders of facets, and the edges given, each once and sorted.
     segment_tags : (s,) int32
         0 unless the edge was given with a tag.
 
@@ -77,48 +95,54 @@ class PLC(Told):
     edges: Ints = _NOT_GIVEN
     edge_tags: Ints = _NOT_GIVEN
     points_kept: Ints = _NOT_GIVEN
-    names: dict[tuple[int, int], str] = field(default_factory=dict)
+    names: Names = field(default_factory=dict)
     regions: tuple[Region, ...] = ()
     holes: Floats = _NOT_GIVEN
+    flatness: InitVar[float] = FLATNESS
     triangles: Ints = field(init=False)
     triangle_facets: Ints = field(init=False)
     segments: Ints = field(init=False)
     segment_tags: Ints = field(init=False)
 
-    def __post_init__(self) -> None:
-        points = _as_points(self.points)
+    def __post_init__(self, flatness: float) -> None:
+        points, edges = as_points(self.points), as_edges(self.edges)
         dim = points.shape[1]
-        loops = FacetLoops.of(self.facets)
-        if dim == 2 and len(loops):
+        given = self.facets
+        facets = given if isinstance(given, SurfaceFacets) else FacetLoops.of(given)
+        if dim == 2 and len(facets):
             raise ValueError("facets are given in 3D only; in 2D give edges")
-        _require_in_range("facets", loops.indices, len(points))
-        edges = _as_edges(self.edges, points)
-        triangles, triangle_facets = triangulated(points, loops, edges)
-        arrays = {
-            "points": points,
-            "facet_tags": _as_tags(self.facet_tags, "facet_tags", len(loops)),
-            "edges": edges,
-            "edge_tags": _as_tags(self.edge_tags, "edge_tags", len(edges)),
-            "points_kept": _as_kept(self.points_kept, len(points)),
-            "holes": _as_holes(self.holes, dim),
-            "triangles": triangles,
-            "triangle_facets": triangle_facets,
-        }
-        self._store(loops, arrays, _as_regions(self.regions, dim))
-
-    def _store(
-        self, facets: Sequence[Loops], arrays: dict[str, Any], regions: tuple[Region, ...]
-    ) -> None:
-        arrays["segments"], arrays["segment_tags"] = segments_of(
-            arrays["triangles"], arrays["triangle_facets"], arrays["edges"], arrays["edge_tags"]
+        kept = as_points_kept(self.points_kept)
+        for name, indices in (("facets", facets.indices), ("edges", edges), ("points_kept", kept)):
+            require_in_range(name, indices, len(points))
+        edge_tags = as_tags(self.edge_tags, "edge_tags", len(edges))
+        triangles, triangle_facets = _triangulated(points, facets, edges, flatness)
+        borders, _ = borders_of(triangles, triangle_facets)
+        segments, segment_tags = segments_of(
+            edges, edge_tags, np.concatenate([facets.inner_edges, borders])
         )
-        for name, array in arrays.items():
-            array.flags.writeable = False
-            object.__setattr__(self, name, array)
-        dim = arrays["points"].shape[1]
-        object.__setattr__(self, "facets", facets)
-        object.__setattr__(self, "regions", regions)
-        object.__setattr__(self, "names", _as_names(self.names, regions, dim))
+        regions = as_regions(self.regions, dim)
+        self._store(
+            facets=facets,
+            regions=regions,
+            names=as_names(self.names, regions, dim),
+            points=points,
+            facet_tags=as_tags(self.facet_tags, "facet_tags", len(facets)),
+            edges=edges,
+            edge_tags=edge_tags,
+            points_kept=kept,
+            holes=as_holes(self.holes, dim),
+            triangles=triangles,
+            triangle_facets=triangle_facets,
+            segments=segments,
+            segment_tags=segment_tags,
+        )
+
+    def _store(self, **values: Any) -> None:
+        for name, value in values.items():
+            if isinstance(value, np.ndarray):
+                value = value.view()
+                value.flags.writeable = False
+            object.__setattr__(self, name, value)
 
     @classmethod
     def from_surface(
@@ -131,27 +155,35 @@ class PLC(Told):
         flatness: float = FLATNESS,
         **others: Any,
     ) -> PLC:
-        """Return the complex of a triangle surface; what is planar in it becomes one facet.
+        """Return the complex of a triangle surface, in which what is planar is one facet.
+
+        A facet grows from its largest triangle across edges that two triangles share, and ends
+        where they have another tag, or are not planar with that first one.
 
         Parameters
         ----------
         points : (n, 3) float array
         triangles : (t, 3) int array
+            They may be turned in any way.
         tags : (t,) int array, optional
-            0 by default. Triangles of one facet have one tag.
+            0 by default.
         flat_angle : float
-            Largest angle in degrees between triangles of one facet.
+            The largest angle to the plane of the facet, in degrees.
         flatness : float
-            Largest distance of a point from the plane of its facet, in diagonals of the surface.
+            The largest distance of a point from that plane, in diagonals of the surface.
         **others
-            Edges, names, regions and the like, as `PLC` takes them.
+            Edges, points kept, names, regions and holes, as `PLC` takes them.
         """
-        rows = as_int32(triangles, "triangles")
-        owners = planar_facets(_as_points(points), rows, tags, flat_angle, flatness)
-        facet_tags = None if tags is None else np.asarray(tags)
-        return cls(
-            points, facets=rows[np.argsort(owners, kind="stable")], facet_tags=facet_tags, **others
-        )
+        places = as_points(points)
+        rows = as_rows(triangles, "triangles", 3)
+        if places.shape[1] != 3:
+            raise ValueError("a surface has points (n, 3)")
+        require_in_range("triangles", rows, len(places))
+        given = as_tags(tags, "tags", len(rows))
+        owners = planar_facets(places, rows, given, flat_angle=flat_angle, flatness=flatness)
+        first = np.unique(owners, return_index=True)[1]
+        facets = SurfaceFacets(places, rows, owners)
+        return cls(places, facets=facets, facet_tags=given[first], **others)
 
     @property
     def dim(self) -> int:
@@ -169,111 +201,19 @@ class PLC(Told):
         return len(self.facet_tags)
 
     def _figures(self) -> dict[str, Any]:
-        counts = {"points": self.n_points, "facets": self.n_facets, "segments": len(self.segments)}
-        return {"dim": self.dim, **counts, "names": ", ".join(sorted(self.names.values())) or None}
+        counts: dict[str, Any] = {"dim": self.dim, "points": self.n_points}
+        if self.dim == 3:
+            counts |= {"facets": self.n_facets, "triangles": len(self.triangles)}
+        counts |= {"segments": len(self.segments), "regions": len(self.regions)}
+        return {**counts, "names": ", ".join(sorted(self.names.values())) or None}
+
+    def _drawing(self) -> str:
+        return drawing_of(self.points, self.triangles, self.segments) if self.dim == 2 else ""
 
 
-def _as_points(given: ArrayLike) -> Floats:
-    points = _as_floats(given, "points")
-    if points.ndim != 2 or points.shape[1] not in (2, 3):
-        raise ValueError(f"points must have shape (n, 2) or (n, 3), not {points.shape}")
-    if len(points) == 0:
-        raise ValueError("the complex is empty: it has no points")
-    _require_finite("point", points)
-    return points
-
-
-def _as_floats(given: ArrayLike, name: str) -> Floats:
-    array = np.asarray(given)
-    if array.dtype.kind not in "biuf":
-        raise TypeError(f"{name} must be real numbers, not {array.dtype}")
-    return np.array(array, dtype=np.float64, order="C")
-
-
-def _require_finite(what: str, rows: Floats) -> None:
-    bad = ~np.isfinite(rows).all(axis=1)
-    if bad.any():
-        at = int(np.argmax(bad))
-        raise ValueError(f"{what} {at} is {tuple(rows[at].tolist())}, not finite")
-
-
-def _require_in_range(name: str, indices: AnyArray, n_points: int) -> None:
-    outside = (indices < 0) | (indices >= n_points)
-    if outside.any():
-        raise ValueError(
-            f"{name} refer to point {indices[outside].flat[0]} (counting from 0), "
-            f"there are {n_points} points"
-        )
-
-
-def _as_edges(given: ArrayLike | None, points: Floats) -> Ints:
-    edges = np.zeros((0, 2), np.int32) if given is None else as_int32(given, "edges")
-    if edges.size == 0:
-        edges = edges.reshape(0, 2)
-    if edges.ndim != 2 or edges.shape[1] != 2:
-        raise ValueError(f"edges must have shape (e, 2), not {edges.shape}")
-    _require_in_range("edges", edges, len(points))
-    loops = edges[:, 0] == edges[:, 1]
-    if loops.any():
-        at = int(np.argmax(loops))
-        raise ValueError(f"edges[{at}] joins point {edges[at, 0]} to itself")
-    return edges
-
-
-def _as_tags(given: ArrayLike | None, name: str, length: int) -> Ints:
-    tags = np.zeros(length, np.int32) if given is None else as_int32(given, name)
-    if tags.shape != (length,):
-        raise ValueError(f"{name} must have shape ({length},), not {tags.shape}")
-    return tags
-
-
-def _as_kept(given: ArrayLike | None, n_points: int) -> Ints:
-    kept = as_int32([] if given is None else given, "points_kept")
-    if kept.ndim != 1:
-        raise ValueError(f"points_kept must have shape (k,), not {kept.shape}")
-    _require_in_range("points_kept", kept, n_points)
-    return np.unique(kept)
-
-
-def _as_holes(given: ArrayLike | None, dim: int) -> Floats:
-    holes = np.zeros((0, dim)) if given is None else _as_floats(given, "holes")
-    if holes.size == 0:
-        holes = holes.reshape(0, dim)
-    if holes.ndim != 2 or holes.shape[1] != dim:
-        raise ValueError(f"holes must have shape (h, {dim}), not {holes.shape}")
-    _require_finite("hole", holes)
-    return holes
-
-
-def _as_regions(given: Sequence[Region], dim: int) -> tuple[Region, ...]:
-    regions = tuple(given)
-    for number, region in enumerate(regions):
-        if not isinstance(region, Region):
-            raise TypeError(f"regions[{number}] must be a Region, not {type(region).__name__}")
-        if len(region.seed) != dim:
-            raise ValueError(
-                f"the seed of regions[{number}] has {len(region.seed)} coordinates, "
-                f"the points have {dim}"
-            )
-    return regions
-
-
-def _as_names(
-    given: Mapping[tuple[int, int], str] | None, regions: tuple[Region, ...], dim: int
-) -> dict[tuple[int, int], str]:
-    names: dict[tuple[int, int], str] = {}
-    for key, name in (given or {}).items():
-        if not (isinstance(key, tuple) and len(key) == 2):
-            raise TypeError(f"names must have keys (dim, tag), not {key!r}")
-        if not isinstance(name, str):
-            raise TypeError(f"the name of {key} must be a string, not {name!r}")
-        if not 0 <= key[0] <= dim:
-            raise ValueError(f"names has dimension {key[0]} in {key}, the complex has {dim}")
-        names[int(key[0]), int(key[1])] = name
-    for region in regions:
-        if region.name is not None and names.setdefault((dim, region.tag), region.name) != (
-            region.name
-        ):
-            other = names[dim, region.tag]
-            raise ValueError(f"region {region.tag} is called {region.name!r} and {other!r}")
-    return names
+def _triangulated(
+    points: Floats, facets: FacetLoops | SurfaceFacets, edges: Ints, flatness: float
+) -> tuple[Ints, Ints]:
+    if len(facets) == 0:
+        return np.zeros((0, 3), np.int32), np.zeros(0, np.int32)
+    return facets.triangulated(points, edges, flatness * diagonal(points))
