@@ -34,4 +34,6 @@ void bind_remesh(nb::module_ &module);
 void bind_facet_shapes(nb::module_ &module);
 void bind_surface(nb::module_ &module);
 
+void bind_facets(nb::module_ &module);
+
 } // namespace anistar::bindings
