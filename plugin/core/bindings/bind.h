@@ -23,6 +23,8 @@ void bind_facet_pairs(nb::module_ &module);
 void bind_locator(nb::module_ &module);
 void bind_nearest(nb::module_ &module);
 
+void bind_constrained(nb::module_ &module);
+
 void bind_supermesh(nb::module_ &module);
 void bind_symmetric_system(nb::module_ &module);
 

@@ -15,6 +15,7 @@ NB_MODULE(_core, module) {
   bind_facet_pairs(module);
   bind_locator(module);
   bind_nearest(module);
+  bind_constrained(module);
   bind_supermesh(module);
   bind_symmetric_system(module);
   bind_remesh_settings(module); // and what is told in their terms

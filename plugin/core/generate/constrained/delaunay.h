@@ -1,0 +1,14 @@
+#pragma once
+// The Delaunay tetrahedralisation of given points.
+
+#include "generate/constrained/exact_points.h"
+#include "generate/constrained/ghost_mesh.h"
+
+namespace anistar::generate {
+
+/// The Delaunay tetrahedralisation, unique under the perturbation of
+/// ExactPoints::is_in_sphere; cells are numbered in the order of their vertices.
+/// @throws MeshingError if two points agree, or all lie on a plane
+[[nodiscard]] GhostMesh delaunay(const ExactPoints &points);
+
+} // namespace anistar::generate
