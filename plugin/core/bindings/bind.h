@@ -24,6 +24,7 @@ void bind_locator(nb::module_ &module);
 void bind_nearest(nb::module_ &module);
 
 void bind_constrained(nb::module_ &module);
+void bind_check_plc(nb::module_ &module);
 
 void bind_supermesh(nb::module_ &module);
 void bind_symmetric_system(nb::module_ &module);

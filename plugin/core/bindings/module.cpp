@@ -16,6 +16,7 @@ NB_MODULE(_core, module) {
   bind_locator(module);
   bind_nearest(module);
   bind_constrained(module);
+  bind_check_plc(module);
   bind_supermesh(module);
   bind_symmetric_system(module);
   bind_remesh_settings(module); // and what is told in their terms
