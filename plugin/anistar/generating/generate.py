@@ -9,19 +9,19 @@ from ..base.settings import chosen
 from ..base.telling import tell
 from ..objects import AnyMesh
 from .checking import require_valid
-from .constrained import constrained
 from .first_mesh import FirstMesh
 from .geometries import AnyGeometry, opened_geometry
-from .measures import FacetMeasures
+from .methods.constrained import constrained
+from .methods.refined import refined
+from .methods.remeshed import remeshed
+from .methods.stages import Clock, Stage
 from .options import GenerateOptions
-from .refined import refined
-from .remeshed import remeshed
 from .repairing import repaired
 from .report import GenerateReport
+from .report.measures import FacetMeasures
+from .report.shapes import CellShapes
 from .result import Generated
-from .shapes import CellShapes
-from .stages import Clock, Stage
-from .wanted import Sizes, wish_for
+from .sizes.wanted import Sizes, wish_for
 
 
 def generate(

@@ -9,17 +9,17 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import _core
-from ..base.arrays import Floats
-from ..meshes.mesh import Mesh
-from ..metric import check_metric, from_sizes, graded, intersected
-from ..metric.base.mesh import diameter
-from ..metric.base.names import Tag
-from ..metric.kernels.elementary import exp, log
-from ..metric.sources.size_at import sizes_at
-from ..objects import AnyMesh, metric_in, opened
-from ..transfer import transfer
-from .first_mesh import FirstMesh
+from ... import _core
+from ...base.arrays import Floats
+from ...meshes.mesh import Mesh
+from ...metric import check_metric, from_sizes, graded, intersected
+from ...metric.base.mesh import diameter
+from ...metric.base.names import Tag
+from ...metric.kernels.elementary import exp, log
+from ...metric.sources.size_at import sizes_at
+from ...objects import AnyMesh, metric_in, opened
+from ...transfer import transfer
+from ..first_mesh import FirstMesh
 
 METRIC = "metric"
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ..base.report import as_builtin
-from ..metric.base.told import Told
-from ..remeshing.report import RemeshReport
+from ...base.report import as_builtin
+from ...metric.base.told import Told
+from ...remeshing.report import RemeshReport
 from .measures import FacetMeasures
 from .shapes import CellShapes
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ..base.report import attributes
-from ..meshes.mesh import Mesh
-from ..meshes.topology import cell_volumes, edge_lengths, facet_measures, measure_by_tag
-from .first_mesh import FirstMesh
+from ...base.report import attributes
+from ...meshes.mesh import Mesh
+from ...meshes.topology import cell_volumes, edge_lengths, facet_measures, measure_by_tag
+from ..first_mesh import FirstMesh
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Floats
-from ..base.report import attributes
-from ..meshes.mesh import Mesh
-from ..meshes.topology import cell_determinants, vector_lengths
+from ...base.arrays import Floats
+from ...base.report import attributes
+from ...meshes.mesh import Mesh
+from ...meshes.topology import cell_determinants, vector_lengths
 
 #: Bounds of the classes of angles, in degrees.
 ANGLE_BINS = (0.0, 1.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 180.0)

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.arrays import Floats
-from ..meshes.mesh import Mesh
-from ..metric import from_sizes, intersected
-from ..metric.base.mesh import diameter
-from ..remeshing.remesh import remesh
-from ..remeshing.report import RemeshReport
-from .first_mesh import FirstMesh
-from .options import GenerateOptions
+from ...base.arrays import Floats
+from ...meshes.mesh import Mesh
+from ...metric import from_sizes, intersected
+from ...metric.base.mesh import diameter
+from ...remeshing.remesh import remesh
+from ...remeshing.report import RemeshReport
+from ..first_mesh import FirstMesh
+from ..options import GenerateOptions
+from ..sizes.wishes import Wish
 from .stages import Clock, Stage
-from .wishes import Wish
 
 #: A wish that is not uniform is looked at on so many meshes at most.
 MOST_PASSES = 6

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..meshes.mesh import Mesh
-from ..remeshing.report import RemeshReport
+from ...meshes.mesh import Mesh
+from ...remeshing.report import RemeshReport
 
 #: What a step that begins after its time gets, in seconds: it stops at its first look.
 NO_TIME = 1e-3

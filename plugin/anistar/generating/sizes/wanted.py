@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.arrays import Floats
-from ..metric.base.mesh import diameter
-from ..objects import AnyMesh
-from .first_mesh import FirstMesh
-from .options import GenerateOptions
+from ...base.arrays import Floats
+from ...metric.base.mesh import diameter
+from ...objects import AnyMesh
+from ..first_mesh import FirstMesh
+from ..options import GenerateOptions
 from .widths import local_widths
 from .wishes import (
     Carried,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.arrays import Bools, Floats, Ints, Longs
-from ..meshes.mesh import Mesh
-from ..meshes.topology import edge_lengths, facet_table, vector_lengths
+from ...base.arrays import Bools, Floats, Ints, Longs
+from ...meshes.mesh import Mesh
+from ...meshes.topology import edge_lengths, facet_table, vector_lengths
 
 #: The sides of a triangle, and the corner opposite each.
 SIDES = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
