@@ -102,11 +102,14 @@ class GenerateOptions:
             raise ValueError(f"growth must be above 1 and finite, got {self.growth}")
         self.as_remesh_options()  # checks the others
 
-    def as_remesh_options(self, *, max_seconds: float | None = None) -> RemeshOptions:
+    def as_remesh_options(
+        self, *, max_seconds: float | None = None, agreement: bool | Literal["auto"] = "auto"
+    ) -> RemeshOptions:
         """Return what `remesh` is told; the facets of polyhedra are told apart by their tags."""
         return RemeshOptions(
             shape="smooth" if self.shape == "smooth" else "faceted",
             ridge_angle=self.ridge_angle,
+            agreement=agreement,
             max_refinement=None,
             max_vertices=self.max_vertices,
             max_seconds=self.max_seconds if max_seconds is None else max_seconds,

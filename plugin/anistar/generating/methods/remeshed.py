@@ -19,7 +19,7 @@ from .stages import Clock, Stage
 MOST_PASSES = 6
 
 #: Relative change of the number of points below which the last mesh has all that is wished for.
-SETTLED = 0.03
+SETTLED = 0.05
 
 #: Edges per diagonal of the mesh on which a wish is seen first.
 FIRST_LOOK = 20.0
@@ -34,7 +34,11 @@ def remeshed(first: FirstMesh, wish: Wish, options: GenerateOptions, clock: Cloc
         metric = wish.metric_on(mesh)
         if number == 0 and wish.may_surprise:
             metric = _looked_at_closely(mesh, metric)
-        budget = options.as_remesh_options(max_seconds=clock.seconds_left())
+        budget = options.as_remesh_options(
+            max_seconds=clock.seconds_left(),
+            # stars of a mesh that is remeshed again need not agree
+            agreement="auto" if wish.is_settled or number > 0 else False,
+        )
         done = remesh(mesh, metric, budget, geometry=geometry)
         mesh = done.mesh
         reports.append(done.report)
