@@ -36,5 +36,6 @@ void bind_facet_shapes(nb::module_ &module);
 void bind_surface(nb::module_ &module);
 
 void bind_facets(nb::module_ &module);
+void bind_plane(nb::module_ &module);
 
 } // namespace anistar::bindings

@@ -25,4 +25,5 @@ NB_MODULE(_core, module) {
   bind_facet_shapes(module);
   bind_surface(module);
   bind_facets(module);
+  bind_plane(module);
 }
