@@ -37,7 +37,7 @@ class Pieces(Protocol):
         The segment that each is a part of.
     steiner_ends : (s, 2) int32
         The points between which each point after those of the complex was placed.
-    steiner_fractions : (s,) float64
+    steiner_shares : (s,) float64
         How far from the first of them to the second, in (0, 1).
     """
 
@@ -49,7 +49,7 @@ class Pieces(Protocol):
     edges: Ints
     edge_segments: Ints
     steiner_ends: Ints
-    steiner_fractions: Floats
+    steiner_shares: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +140,7 @@ class FirstMesh:
         Sizes (p,) or metrics (p, d, d) are interpolated along segments by their logarithms;
         infinite sizes stay so where an end of the segment has one.
         """
-        ends, shares = self.pieces.steiner_ends, self.pieces.steiner_fractions
+        ends, shares = self.pieces.steiner_ends, self.pieces.steiner_shares
         to_log, from_log = (log, exp) if values.ndim == 1 else (log_metric, exp_metric)
         known = to_log(values)
         n = len(known)

@@ -94,7 +94,7 @@ def _generated(
             plc, repair = repaired(opened.plc, options.repair)
             require_valid(plc)
         with clock.timed("constrained"):
-            pieces = constrained(plc, options)
+            pieces = _constrained(plc, options, clock)
             first = FirstMesh.of(plc, pieces)
         with clock.timed(options.method):
             made = _finished(first, size, metric, options, clock)
@@ -105,7 +105,7 @@ def _generated(
         n_points=made.mesh.n_points,
         n_cells=made.mesh.n_cells,
         shapes=CellShapes.of(made.mesh),
-        measures=FacetMeasures.of(first, made.numbered or first.mesh),
+        measures=FacetMeasures.of(first, made),
         repair=repair.as_dict(),
         constrained=pieces.counts,
         refinement=made.refinement,
@@ -116,6 +116,13 @@ def _generated(
     )
     tell(report.warnings)
     return Generated(made.mesh, report)
+
+
+def _constrained(plc: PLC, options: GenerateOptions, clock: Clock) -> Constrained | PlanePieces:
+    if plc.dim == 3:
+        return constrained(plc, options)
+    budget = PlaneBudget(max_seconds=clock.seconds_left(), callback=options.callback)
+    return constrained_plane(plc, options.inside, budget)
 
 
 def _finished(

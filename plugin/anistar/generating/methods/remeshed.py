@@ -27,7 +27,9 @@ FIRST_LOOK = 20.0
 
 def remeshed(first: FirstMesh, wish: Wish, options: GenerateOptions, clock: Clock) -> Stage:
     """Return the mesh that has what is wished for, within the options."""
-    mesh = geometry = first.smooth() if options.shape == "smooth" else first.mesh
+    # in the plane, a line of segments that go straight on is one curve, which numbers would cut
+    is_numbered = options.shape == "polyhedron" and first.plc.dim == 3
+    mesh = geometry = first.mesh if is_numbered else first.smooth()
     reports: list[RemeshReport] = []
     for number in range(MOST_PASSES):
         before = mesh.n_points
@@ -46,8 +48,8 @@ def remeshed(first: FirstMesh, wish: Wish, options: GenerateOptions, clock: Cloc
             break
     last = reports[-1]
     return Stage(
-        numbered=None if options.shape == "smooth" else mesh,
-        mesh=mesh if options.shape == "smooth" else first.tagged(mesh),
+        numbered=mesh if is_numbered else None,
+        mesh=first.tagged(mesh) if is_numbered else mesh,
         stop_reason=last.stop_reason,
         remeshing=tuple(reports),
     )

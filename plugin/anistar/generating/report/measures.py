@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from ...base.arrays import Ints
 from ...base.report import attributes
 from ...meshes.mesh import Mesh
 from ...meshes.topology import cell_volumes, edge_lengths, facet_measures, measure_by_tag
 from ..first_mesh import FirstMesh
+from ..methods.stages import Stage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,10 +22,11 @@ class FacetMeasures:
     Attributes
     ----------
     facet_error : float
-        Largest difference of the area of a facet (in 2D: length of a segment) of the geometry from
-        that of the mesh, relative to all of them.
+        Largest difference of the area of a facet of the geometry from that of the mesh, relative to
+        the area of all. Where facets are smooth, and in 2D, it is that of the area (length) that
+        a tag carries.
     worst_facet : int
-        The facet with it, -1 if there is none.
+        The facet with it, -1 where tags are compared.
     region_error : float
         Largest difference of the volume of a region from that in the constrained mesh, relative to
         the volume of all.
@@ -37,32 +40,38 @@ class FacetMeasures:
     regions: dict[int, float]
 
     @classmethod
-    def of(cls, first: FirstMesh, mesh: Mesh) -> FacetMeasures:
-        """Return how exactly a mesh, each of whose facets has its own tag, is the geometry."""
+    def of(cls, first: FirstMesh, stage: Stage) -> FacetMeasures:
+        """Return how exactly a mesh is the geometry: facet by facet, or tag by tag."""
         plc = first.plc
-        given, owners = (
-            (facet_measures(plc.points, plc.triangles), plc.triangle_facets)
+        mesh = stage.mesh if stage.numbered is None else stage.numbered
+        given, owners, tags = (
+            (facet_measures(plc.points, plc.triangles), plc.triangle_facets, plc.facet_tags)
             if plc.dim == 3
-            else (edge_lengths(plc.points, plc.segments), np.arange(len(plc.segments)))
+            else (edge_lengths(plc.points, plc.segments), _rows(plc.segments), plc.segment_tags)
         )
-        n = int(max(owners.max(initial=-1), mesh.facet_tags.max(initial=-1))) + 1
-        wanted = np.bincount(owners, given, n)
-        found = np.bincount(mesh.facet_tags, facet_measures(mesh.points, mesh.facets), n)
-        in_mesh = np.isin(np.arange(n), first.mesh.facet_tags)
-        error = np.abs(found - wanted) * in_mesh / wanted.sum() if n else np.zeros(0)
-        worst = int(np.argmax(error)) if n else -1
+        in_mesh = np.isin(owners, first.mesh.facet_tags)
+        numbers = owners if stage.numbered is not None else tags[owners]
+        wanted = measure_by_tag(given[in_mesh], numbers[in_mesh])
+        found = measure_by_tag(facet_measures(mesh.points, mesh.facets), mesh.facet_tags)
+        total = sum(wanted.values())
+        errors = {n: abs(found.get(n, 0.0) - size) / total for n, size in wanted.items()}
+        worst = max(errors, key=lambda number: errors[number], default=-1)
         before, after = _volumes(first.mesh), _volumes(mesh)
-        total = sum(before.values())
+        difference = max(abs(after.get(tag, 0.0) - size) for tag, size in before.items())
         return cls(
-            facet_error=float(error[worst]) if n else 0.0,
-            worst_facet=worst,
-            region_error=max(abs(after.get(t, 0.0) - v) for t, v in before.items()) / total,
+            facet_error=errors.get(worst, 0.0),
+            worst_facet=worst if stage.numbered is not None else -1,
+            region_error=difference / sum(before.values()),
             regions=after,
         )
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
         return attributes(self)
+
+
+def _rows(simplices: Ints) -> Ints:
+    return np.arange(len(simplices), dtype=np.int32)
 
 
 def _volumes(mesh: Mesh) -> dict[int, float]:

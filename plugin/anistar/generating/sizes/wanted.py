@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ...base.arrays import Floats
 from ...metric.base.mesh import diameter
+from ...meshes.mesh import Mesh
 from ...objects import AnyMesh
 from ..first_mesh import FirstMesh
 from ..options import GenerateOptions
@@ -67,7 +68,9 @@ def wish_for(
         shape = first.smooth() if options.shape == "smooth" else first.mesh
         on_surface = np.minimum(on_surface, local_widths(shape))
     if options.size_at:
-        wishes.append(Named(first, options.size_at, options.growth))
+        is_numbered = options.shape == "polyhedron" and first.plc.dim == 3
+        tagged = first.tagged if is_numbered else _as_it_is
+        wishes.append(Named(tagged, options.size_at, options.growth))
     in_regions = {r.tag: r.size for r in first.plc.regions if r.size is not None}
     if np.isfinite(largest) or np.isfinite(on_surface).any() or in_regions:
         finite = on_surface[np.isfinite(on_surface)]
@@ -75,6 +78,10 @@ def wish_for(
         largest = min(largest, max(far, diameter(first.mesh)))
         wishes.append(Surrounding(first.mesh, on_surface, in_regions, largest, options.growth))
     return wishes[0] if len(wishes) == 1 else Together(wishes)
+
+
+def _as_it_is(mesh: Mesh) -> Mesh:
+    return mesh
 
 
 def _positive(size: float, what: str) -> float:

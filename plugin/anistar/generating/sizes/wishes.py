@@ -19,7 +19,6 @@ from ...metric.kernels.elementary import exp, log
 from ...metric.sources.size_at import sizes_at
 from ...objects import AnyMesh, metric_in, opened
 from ...transfer import transfer
-from ..first_mesh import FirstMesh
 
 METRIC = "metric"
 
@@ -154,13 +153,13 @@ class Named:
 
     Attributes
     ----------
-    first : FirstMesh
-        Knows the names.
+    tagged : callable
+        Gives a mesh the tags and names of the geometry.
     sizes : mapping of str or int to float
     growth : float
     """
 
-    first: FirstMesh
+    tagged: Callable[[Mesh], Mesh]
     sizes: Mapping[Tag, float]
     growth: float
 
@@ -168,8 +167,8 @@ class Named:
     may_surprise: ClassVar[bool] = False
 
     def metric_on(self, mesh: Mesh) -> Floats:
-        """Return the isotropic metric of the sizes at the points of a mesh with numbered facets."""
-        sizes = sizes_at(self.first.tagged(mesh), self.sizes, self.growth)
+        """Return the isotropic metric of the sizes at the points of a mesh."""
+        sizes = sizes_at(self.tagged(mesh), self.sizes, self.growth)
         return from_sizes(np.minimum(sizes, diameter(mesh)), mesh.dim)
 
 
