@@ -27,6 +27,7 @@ struct PlcArrays {
   Array2<Index> triangles;       ///< (t, 3)
   Array1<Index> triangle_facets; ///< (t,)
   Array2<Index> segments;        ///< (s, 2)
+  Array1<Index> kept_points;     ///< (k,)
   Array2<double> seeds;          ///< (r, 3)
   Array1<Index> seed_tags;       ///< (r,)
   Array2<double> holes;          ///< (h, 3)
@@ -38,8 +39,8 @@ void require_vertices(std::span<const Row> rows, std::size_t n_points,
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (const Index v : rows[k])
       if (v < 0 || std::cmp_greater_equal(v, n_points))
-        throw std::invalid_argument("vertex " + std::to_string(v) + " of " + name + " " +
-                                    std::to_string(k) + " is not a point");
+        throw std::invalid_argument("vertex " + std::to_string(v) + " of " + name +
+                                    " " + std::to_string(k) + " is not a point");
 }
 
 Plc plc_of(const PlcArrays &arrays) {
@@ -78,6 +79,12 @@ ConstrainedSettings settings_of(const PlcArrays &arrays, const std::string &rule
     throw std::invalid_argument("there are " + std::to_string(places.size()) +
                                 " seeds, but tags of " + std::to_string(tags.size()));
   ConstrainedSettings settings;
+  for (const Index v : indices_of(arrays.kept_points)) {
+    if (v < 0 || std::cmp_greater_equal(v, arrays.points.shape(0)))
+      throw std::invalid_argument("kept point " + std::to_string(v) +
+                                  " is not a point");
+    settings.kept_points.push_back(v);
+  }
   settings.regions.rule = rule_of(rule);
   for (std::size_t k = 0; k < places.size(); ++k)
     settings.regions.seeds.push_back({places[k], tags[k]});
@@ -141,7 +148,8 @@ nb::typed<nb::dict, nb::str, nb::any> as_dict(Constrained &&made) {
 Constrained made_of(const PlcArrays &arrays, const ConstrainedSettings &settings,
                     double max_seconds, nb::handle callback) {
   const Plc plc = plc_of(arrays);
-  Monitor monitor(progress_of(callback), std::numeric_limits<Index>::max(), max_seconds);
+  Monitor monitor(progress_of(callback), std::numeric_limits<Index>::max(),
+                  max_seconds);
   const nb::gil_scoped_release release;
   try {
     return constrained_tetrahedralisation(plc, settings, monitor);
@@ -158,20 +166,22 @@ void bind_constrained(nb::module_ &module) {
       "constrained_tetrahedra",
       [](const Array2<double> &points, const Array2<Index> &triangles,
          const Array1<Index> &triangle_facets, const Array2<Index> &segments,
-         const Array2<double> &seeds, const Array1<Index> &seed_tags,
-         const Array2<double> &holes, const std::string &rule, bool facets_may_flip,
-         double max_seconds, const nb::object &callback) {
-        const PlcArrays arrays{points, triangles, triangle_facets, segments,
-                               seeds,  seed_tags, holes};
+         const Array1<Index> &kept_points, const Array2<double> &seeds,
+         const Array1<Index> &seed_tags, const Array2<double> &holes,
+         const std::string &rule, bool facets_may_flip, double max_seconds,
+         const nb::object &callback) {
+        const PlcArrays arrays{points,      triangles, triangle_facets, segments,
+                               kept_points, seeds,     seed_tags,       holes};
         return as_dict(made_of(arrays, settings_of(arrays, rule, facets_may_flip),
                                max_seconds, callback));
       },
       nb::kw_only(), nb::arg("points").noconvert(), nb::arg("triangles").noconvert(),
       nb::arg("triangle_facets").noconvert(), nb::arg("segments").noconvert(),
-      nb::arg("seeds").noconvert(), nb::arg("seed_tags").noconvert(),
-      nb::arg("holes").noconvert(), nb::arg("rule"), nb::arg("facets_may_flip"),
-      nb::arg("max_seconds"), nb::arg("callback").none(),
-      "Constrained Delaunay tetrahedra of a piecewise linear complex, as arrays by name.");
+      nb::arg("kept_points").noconvert(), nb::arg("seeds").noconvert(),
+      nb::arg("seed_tags").noconvert(), nb::arg("holes").noconvert(), nb::arg("rule"),
+      nb::arg("facets_may_flip"), nb::arg("max_seconds"), nb::arg("callback").none(),
+      "Constrained Delaunay tetrahedra of a piecewise linear complex, as arrays by "
+      "name.");
 }
 
 } // namespace anistar::bindings

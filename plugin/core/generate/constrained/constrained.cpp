@@ -7,6 +7,27 @@
 #include "generate/constrained/regions.h"
 
 namespace anistar::generate {
+namespace {
+
+/// The points that must be vertices of the mesh.
+std::vector<Index> points_in_use(const Plc &plc, const std::vector<Index> &kept) {
+  std::vector<bool> is_used(plc.points.size(), false);
+  for (const Facet<3> &triangle : plc.triangles)
+    for (const Index v : triangle)
+      is_used[v] = true;
+  for (const Segment &segment : plc.segments)
+    for (const Index v : segment)
+      is_used[v] = true;
+  for (const Index v : kept)
+    is_used[v] = true;
+  std::vector<Index> used;
+  for (std::size_t v = 0; v < is_used.size(); ++v)
+    if (is_used[v])
+      used.push_back(static_cast<Index>(v));
+  return used;
+}
+
+} // namespace
 
 Constrained constrained_tetrahedralisation(const Plc &plc,
                                            const ConstrainedSettings &settings,
@@ -14,7 +35,7 @@ Constrained constrained_tetrahedralisation(const Plc &plc,
   ConstrainedCounts counts;
   monitor.enter("Delaunay mesh");
   ExactPoints points(plc.points);
-  GhostMesh mesh = delaunay(points);
+  GhostMesh mesh = delaunay(points, points_in_use(plc, settings.kept_points));
 
   monitor.enter("edges");
   FacetTriangles facets(plc);

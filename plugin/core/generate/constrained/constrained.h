@@ -8,6 +8,9 @@
 namespace anistar::generate {
 
 struct ConstrainedSettings {
+  /// Of the complex, which must be vertices though nothing ends there; other points
+  /// that no triangle or segment uses are left out.
+  std::vector<Index> kept_points;
   RegionChoice regions;
   /// Whether nearly planar facets may consist of other triangles than those given; else
   /// the surface stays as it is, at the price of more points.
@@ -22,7 +25,7 @@ struct ConstrainedCounts {
   std::size_t peeled = 0;    ///< flat cells given to the outside
   std::size_t removed = 0;   ///< edges taken out of flat cells
   std::size_t flat_left = 0; ///< cells that are flat still
-  std::size_t moved = 0;     ///< Steiner points moved along their edge, against flat cells
+  std::size_t moved = 0; ///< Steiner points moved along their edge, against flat cells
   std::size_t predicates = 0, exact_predicates = 0;
 };
 
@@ -31,11 +34,11 @@ struct Constrained {
   ConstrainedCounts counts;
 };
 
-/// Si and Gaertner, 3D boundary recovery by constrained Delaunay tetrahedralization, 2011,
-/// with exact Steiner points and gift-wrapped cavities.
+/// Si and Gaertner, 3D boundary recovery by constrained Delaunay tetrahedralization,
+/// 2011, with exact Steiner points and gift-wrapped cavities.
 /// @throws MeshingError that names what cannot be meshed and where, BudgetSpent
-[[nodiscard]] Constrained constrained_tetrahedralisation(const Plc &plc,
-                                                         const ConstrainedSettings &settings,
-                                                         Monitor &monitor);
+[[nodiscard]] Constrained
+constrained_tetrahedralisation(const Plc &plc, const ConstrainedSettings &settings,
+                               Monitor &monitor);
 
 } // namespace anistar::generate

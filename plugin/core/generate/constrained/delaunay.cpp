@@ -18,12 +18,10 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<Index, Kernel>;
-using CellBase =
-    CGAL::Triangulation_cell_base_with_info_3<Index, Kernel,
-                                              CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
-using Delaunay =
-    CGAL::Delaunay_triangulation_3<Kernel,
-                                   CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
+using CellBase = CGAL::Triangulation_cell_base_with_info_3<
+    Index, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using Delaunay = CGAL::Delaunay_triangulation_3<
+    Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 
 /// A round for each point, twice as many in each as in the one before, without pattern
 /// (splitmix64): Amenta, Choi, Rote, Incremental constructions con BRIO, 2003.
@@ -35,8 +33,15 @@ int round_of(Index v) {
 }
 
 /// Rounds, each along a Hilbert curve.
-std::vector<Index> insertion_order(std::span<const Vector<3>> points) {
-  std::vector<Index> order = hilbert_order<3>(points);
+std::vector<Index> insertion_order(const ExactPoints &points,
+                                   std::span<const Index> vertices) {
+  std::vector<Vector<3>> places;
+  places.reserve(vertices.size());
+  for (const Index v : vertices)
+    places.push_back(points.rounded(v));
+  std::vector<Index> order = hilbert_order<3>(places);
+  for (Index &item : order)
+    item = vertices[item];
   std::ranges::stable_sort(order, {}, round_of);
   return order;
 }
@@ -47,14 +52,11 @@ std::vector<Index> insertion_order(std::span<const Vector<3>> points) {
                      points.rounded(one));
 }
 
-Delaunay inserted(const ExactPoints &points) {
-  std::vector<Vector<3>> places(points.size());
-  for (Index v = 0; v < points.size(); ++v)
-    places[v] = points.rounded(v);
+Delaunay inserted(const ExactPoints &points, std::span<const Index> vertices) {
   Delaunay mesh;
   Delaunay::Cell_handle near;
-  for (const Index v : insertion_order(places)) {
-    const Vector<3> &x = places[v];
+  for (const Index v : insertion_order(points, vertices)) {
+    const Vector<3> &x = points.rounded(v);
     const auto before = mesh.number_of_vertices();
     const Delaunay::Vertex_handle vertex =
         mesh.insert(Kernel::Point_3(x[0], x[1], x[2]), near);
@@ -65,7 +67,8 @@ Delaunay inserted(const ExactPoints &points) {
   }
   if (mesh.dimension() < 3)
     throw MeshingError("all points lie on one plane",
-                       places.empty() ? Vector<3>(Vector<3>::Zero()) : places[0]);
+                       vertices.empty() ? Vector<3>(Vector<3>::Zero())
+                                        : points.rounded(vertices[0]));
   mesh.infinite_vertex()->info() = ghost;
   return mesh;
 }
@@ -74,7 +77,8 @@ Delaunay inserted(const ExactPoints &points) {
 Cell<3> canonical(Cell<3> cell) {
   const auto least = std::ranges::min_element(cell) - cell.begin();
   // even permutations that bring each place to the front
-  constexpr std::size_t front[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
+  constexpr std::size_t front[4][4] = {
+      {0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
   Cell<3> turned;
   for (std::size_t i = 0; i < 4; ++i)
     turned[i] = cell[front[least][i]];
@@ -85,8 +89,8 @@ Cell<3> canonical(Cell<3> cell) {
 
 } // namespace
 
-GhostMesh delaunay(const ExactPoints &points) {
-  const Delaunay mesh = inserted(points);
+GhostMesh delaunay(const ExactPoints &points, std::span<const Index> vertices) {
+  const Delaunay mesh = inserted(points, vertices);
   std::vector<std::pair<Cell<3>, Delaunay::Cell_handle>> cells;
   cells.reserve(mesh.tds().number_of_cells());
   for (auto c = mesh.all_cells_begin(); c != mesh.all_cells_end(); ++c) {

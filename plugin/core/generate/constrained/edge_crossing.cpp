@@ -5,8 +5,8 @@
 namespace anistar::generate {
 namespace {
 
-/// Whether the ray from the vertex at place i of a cell to a point leaves it through the
-/// opposite facet, or along its border.
+/// Whether the ray from the vertex at place i of a cell to a point leaves it through
+/// the opposite facet, or along its border.
 bool is_left_by_ray(const ExactPoints &points, const GhostMesh &mesh, HalfFacet h,
                     Index to) {
   const Index from = mesh.apex(h);
@@ -31,8 +31,8 @@ HalfFacet way_out(const ExactPoints &points, const GhostMesh &mesh, Index from,
 }
 
 /// Another facet of the cell through which the edge goes on.
-HalfFacet next_facet(const ExactPoints &points, const GhostMesh &mesh, HalfFacet entered,
-                     Index from, Index to) {
+HalfFacet next_facet(const ExactPoints &points, const GhostMesh &mesh,
+                     HalfFacet entered, Index from, Index to) {
   for (std::size_t i = 0; i < 4; ++i) {
     const HalfFacet h(entered.cell(), i);
     if (h == entered)

@@ -10,8 +10,8 @@
 
 namespace anistar::generate {
 
-/// What is missing is divided at Steiner points, and the mesh stays Delaunay; edges within
-/// facets give way to other diagonals first, if they may.
+/// What is missing is divided at Steiner points, and the mesh stays Delaunay; edges
+/// within facets give way to other diagonals first, if they may.
 class EdgeRecovery {
 public:
   struct Counts {
@@ -22,8 +22,8 @@ public:
   EdgeRecovery(ExactPoints &points, GhostMesh &mesh, FacetTriangles &facets,
                FacetFlips *flips);
 
-  /// @throws MeshingError where an edge passes through a point, or what cannot be divided
-  /// any more is missing; BudgetSpent
+  /// @throws MeshingError where an edge passes through a point, or what cannot be
+  /// divided any more is missing; BudgetSpent
   Counts run(Monitor &monitor);
 
 private:

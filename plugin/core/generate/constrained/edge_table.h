@@ -36,7 +36,8 @@ public:
       return;
     --n_;
     // what the probing has pushed behind the hole moves up
-    for (std::size_t next = after(hole); slots_[next].number != none; next = after(next)) {
+    for (std::size_t next = after(hole); slots_[next].number != none;
+         next = after(next)) {
       const std::size_t wanted = home_of(slots_[next].key);
       if (distance(wanted, next) >= distance(hole, next)) {
         slots_[hole] = slots_[next];

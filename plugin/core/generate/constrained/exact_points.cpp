@@ -43,7 +43,8 @@ Orientation filtered_orientation(const Vector<3> &a, const Vector<3> &b,
   const double det = w.dot(u.cross(v));
   const double U = reach_of(u, apart), V = reach_of(v, apart), W = reach_of(w, apart);
   // six terms of three factors: what rounding them makes, and what is off beforehand
-  const double bound = 6 * (8 * round_off * U * V * W + apart * (V * W + U * W + U * V));
+  const double bound =
+      6 * (8 * round_off * U * V * W + apart * (V * W + U * W + U * V));
   if (!(bound > anistar::detail::underflow_guard && std::abs(det) > bound))
     return Orientation::degenerate;
   return det > 0 ? Orientation::positive : Orientation::negative;
@@ -119,8 +120,8 @@ Orientation ExactPoints::orientation(Index a, Index b, Index c, Index e) const {
   const double apart = 2 * std::max({error_[a], error_[b], error_[c], error_[e]});
   if (apart == 0)
     return anistar::orientation(rounded_[a], rounded_[b], rounded_[c], rounded_[e]);
-  const Orientation filtered = filtered_orientation(rounded_[a], rounded_[b],
-                                                    rounded_[c], rounded_[e], apart);
+  const Orientation filtered =
+      filtered_orientation(rounded_[a], rounded_[b], rounded_[c], rounded_[e], apart);
   if (filtered != Orientation::degenerate || share_plane(a, b, c, e))
     return filtered;
   return exact_orientation(exact(a), exact(b), exact(c), exact(e));
@@ -170,9 +171,9 @@ Side ExactPoints::exact_side_of_sphere(const Cell<3> &cell, Index p) const {
   const Exact origin = exact(p);
   const Differences u = exact(cell[0]) - origin, v = exact(cell[1]) - origin,
                     w = exact(cell[2]) - origin, s = exact(cell[3]) - origin;
-  const Number value = square(s) * determinant(u, v, w) -
-                       square(w) * determinant(u, v, s) +
-                       square(v) * determinant(u, w, s) - square(u) * determinant(v, w, s);
+  const Number value =
+      square(s) * determinant(u, v, w) - square(w) * determinant(u, v, s) +
+      square(v) * determinant(u, w, s) - square(u) * determinant(v, w, s);
   return static_cast<Side>(-static_cast<int>(CGAL::sign(value)));
 }
 
@@ -192,7 +193,8 @@ bool ExactPoints::perturbed_is_in_sphere(const Cell<3> &cell, Index p) const {
   // slots 0 to 3 are the vertices of the cell, 4 is p
   const std::array<Index, 5> point{cell[0], cell[1], cell[2], cell[3], p};
   std::array<int, 5> order{0, 1, 2, 3, 4};
-  std::ranges::sort(order, [&](int i, int j) { return compare(point[i], point[j]) < 0; });
+  std::ranges::sort(order,
+                    [&](int i, int j) { return compare(point[i], point[j]) < 0; });
   for (std::size_t i = 4; i > 0; --i) {
     if (order[i] == 4)
       return false;

@@ -2,8 +2,8 @@
 // The points of a complex, those placed on its edges, and exact predicates on both.
 //
 // A Steiner point (1 - t) a + t b is kept as it is defined, so that it lies on its edge
-// and in every facet at that edge exactly; its rounded coordinates serve the filters. As
-// t is a double, exact coordinates are sums of powers of two and need no division.
+// and in every facet at that edge exactly; its rounded coordinates serve the filters.
+// As t is a double, exact coordinates are sums of powers of two and need no division.
 
 #include "base/predicates.h"
 #include "generate/tetrahedralisation.h"
@@ -53,8 +53,8 @@ public:
 
   /// Whether p is in the circumsphere of a positively oriented cell, after a symbolic
   /// perturbation that leaves no five points on one sphere: that of Devillers and
-  /// Teillaud, Perturbations for Delaunay and weighted Delaunay 3D triangulations, 2011,
-  /// which CGAL's Delaunay triangulations use.
+  /// Teillaud, Perturbations for Delaunay and weighted Delaunay 3D triangulations,
+  /// 2011, which CGAL's Delaunay triangulations use.
   [[nodiscard]] bool is_in_sphere(const Cell<3> &cell, Index p) const;
 
   /// Negative, zero or positive: lexicographic order of the coordinates.

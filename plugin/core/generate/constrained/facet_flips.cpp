@@ -9,8 +9,8 @@ using Quad = FacetTriangles::Quad;
 
 /// Flips come to an end, even where rounded angles would have them go round in circles.
 constexpr Index max_tries = 6;
-/// The share of its area that each of the two triangles of a flipped quadrilateral has at
-/// least, far above what rounding makes of a straight corner.
+/// The share of its area that each of the two triangles of a flipped quadrilateral has
+/// at least, far above what rounding makes of a straight corner.
 constexpr double least_share = 1e-9;
 /// How clearly two opposite angles must add up to more than 180 degrees, as a sine.
 constexpr double clearly = 1e-9;
@@ -37,7 +37,8 @@ bool is_delaunay_flip(const ExactPoints &points, const Quad &quad) {
   const Vector<3> &a = points.rounded(quad.from), &b = points.rounded(quad.to),
                   &c = points.rounded(quad.left), &d = points.rounded(quad.right);
   const Angle left(a - c, b - c), right(a - d, b - d);
-  const double sides = (a - c).norm() * (b - c).norm() * (a - d).norm() * (b - d).norm();
+  const double sides =
+      (a - c).norm() * (b - c).norm() * (a - d).norm() * (b - d).norm();
   return left.sine * right.cosine + left.cosine * right.sine < -clearly * sides;
 }
 

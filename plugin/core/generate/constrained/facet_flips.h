@@ -1,6 +1,6 @@
 #pragma once
-// The choice of the triangles that make up a nearly planar facet: those of the input are
-// often none that a Delaunay mesh has, and any others within its flatness will do.
+// The choice of the triangles that make up a nearly planar facet: those of the input
+// are often none that a Delaunay mesh has, and any others within its flatness will do.
 
 #include "generate/constrained/exact_points.h"
 #include "generate/constrained/facet_triangles.h"
@@ -16,8 +16,8 @@ public:
   /// Flips missing edges within facets to diagonals that the mesh has, or else towards
   /// the Delaunay triangles of the facet. @pre no planes are known yet
   void flip_missing_edges();
-  /// Whether a missing edge should be the other diagonal of its quadrilateral; asked too
-  /// often for the same one the answer is no.
+  /// Whether a missing edge should be the other diagonal of its quadrilateral; asked
+  /// too often for the same one the answer is no.
   [[nodiscard]] bool should_flip(Index edge);
 
   [[nodiscard]] std::size_t n_flips() const { return n_flips_; }

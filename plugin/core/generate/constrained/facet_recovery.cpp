@@ -140,7 +140,8 @@ HalfFacet FacetRecovery::look_left(const Border &border, Index &crossed) {
         crossed = c;
         return {};
       }
-      if (side_.is_on(y)) { // the cell below; seen from above it is its neighbour's facet
+      if (side_.is_on(
+              y)) { // the cell below; seen from above it is its neighbour's facet
         std::size_t x_place = *mesh_.index_of(c, x);
         return mesh_.opposite({c, x_place});
       }
@@ -218,7 +219,8 @@ std::array<HalfCavity, 2> FacetRecovery::halves(const std::vector<Index> &cavity
       const bool is_above =
           std::ranges::any_of(facet, [&](Index v) { return side_.is_above(v); });
       (is_above ? above : below).border.push_back(facet);
-      outside.push_back({sorted(facet), is_inside ? HalfFacet() : other, mesh_.wall(h)});
+      outside.push_back(
+          {sorted(facet), is_inside ? HalfFacet() : other, mesh_.wall(h)});
     }
   }
   std::ranges::sort(vertices);

@@ -5,8 +5,8 @@
 #include "generate/constrained/exact_points.h"
 #include "generate/constrained/facet_side.h"
 #include "generate/constrained/facet_triangles.h"
-#include "generate/constrained/gift_wrapping.h"
 #include "generate/constrained/ghost_mesh.h"
+#include "generate/constrained/gift_wrapping.h"
 
 #include <vector>
 
@@ -23,11 +23,12 @@ public:
     std::size_t cavities = 0, largest_cavity = 0, rejections = 0;
   };
 
-  FacetRecovery(const ExactPoints &points, GhostMesh &mesh, const FacetTriangles &facets)
+  FacetRecovery(const ExactPoints &points, GhostMesh &mesh,
+                const FacetTriangles &facets)
       : points_(points), mesh_(mesh), facets_(facets), side_(points) {}
 
-  /// The walls of the mesh are numbers of planes afterwards; their cells on the positive
-  /// side see them in the sense of the plane.
+  /// The walls of the mesh are numbers of planes afterwards; their cells on the
+  /// positive side see them in the sense of the plane.
   /// @throws MeshingError where two facets cross; BudgetSpent
   Counts run(Monitor &monitor);
 

@@ -192,7 +192,8 @@ std::optional<FacetTriangles::Quad> FacetTriangles::quad(Index edge) const {
   if (t.facet != s.facet || t.vertices[i] == s.vertices[j])
     return std::nullopt;
   return Quad{t.vertices[i], t.vertices[next_place(i)],
-              t.vertices[next_place(next_place(i))], s.vertices[next_place(next_place(j))]};
+              t.vertices[next_place(next_place(i))],
+              s.vertices[next_place(next_place(j))]};
 }
 
 Index FacetTriangles::flip(Index edge) {

@@ -12,8 +12,8 @@
 
 namespace anistar::generate {
 
-/// An edge of the complex, or an edge between two triangles of a facet that do not lie on
-/// one plane, as it was before anything was placed on it.
+/// An edge of the complex, or an edge between two triangles of a facet that do not lie
+/// on one plane, as it was before anything was placed on it.
 struct Line {
   Index from, to;
   Index segment; ///< of the complex, `none` for an edge within a facet
@@ -59,8 +59,8 @@ public:
   /// The triangles of each plane.
   [[nodiscard]] std::vector<std::vector<Index>> triangles_by_plane() const;
 
-  /// Joins triangles of one facet that lie exactly on one plane, across edges that are no
-  /// segments, and requires all other edges.
+  /// Joins triangles of one facet that lie exactly on one plane, across edges that are
+  /// no segments, and requires all other edges.
   void find_planes(ExactPoints &points);
 
   /// Divides an edge, with the triangles at it, at a point. @returns its two parts
@@ -74,8 +74,8 @@ public:
   [[nodiscard]] std::optional<Quad> quad(Index edge) const;
   /// Puts the other diagonal in the place of an edge. @pre quad(edge), which is convex
   Index flip(Index edge);
-  /// The same for triangles that have planes: they get new ones, and all their edges are
-  /// required from now on. @returns those of their edges that are no segments
+  /// The same for triangles that have planes: they get new ones, and all their edges
+  /// are required from now on. @returns those of their edges that are no segments
   std::vector<Index> flip_required(Index edge, ExactPoints &points);
 
 private:
@@ -92,7 +92,8 @@ private:
   void require(Index edge);
   Index add_plane(Index triangle, ExactPoints &points);
   void flood_plane(Index seed, ExactPoints &points);
-  [[nodiscard]] Index same_facet_across(const Triangle &triangle, std::size_t place) const;
+  [[nodiscard]] Index same_facet_across(const Triangle &triangle,
+                                        std::size_t place) const;
 };
 
 } // namespace anistar::generate

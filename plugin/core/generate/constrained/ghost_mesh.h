@@ -1,6 +1,7 @@
 #pragma once
-// A tetrahedralisation of the whole space: the outside of the convex hull is filled with
-// cells that join its facets to one ghost vertex, so that no facet is without neighbour.
+// A tetrahedralisation of the whole space: the outside of the convex hull is filled
+// with cells that join its facets to one ghost vertex, so that no facet is without
+// neighbour.
 
 #include "mesh/adjacency.h"
 
@@ -61,7 +62,9 @@ public:
     return cells_[h.cell()].neighbours[h.facet()];
   }
   /// What the facet is part of, `none` if it is no wall.
-  [[nodiscard]] Index wall(HalfFacet h) const { return cells_[h.cell()].walls[h.facet()]; }
+  [[nodiscard]] Index wall(HalfFacet h) const {
+    return cells_[h.cell()].walls[h.facet()];
+  }
   [[nodiscard]] Facet<3> facet(HalfFacet h) const {
     return facet_of<3>(cell(h.cell()), h.facet());
   }
@@ -80,8 +83,8 @@ public:
   void join(HalfFacet one, HalfFacet other);
   /// Makes a wall of both sides of a facet, or none.
   void set_wall(HalfFacet h, Index wall);
-  /// Joins facets with the same vertices, each of which there are two, and makes walls of
-  /// those where one is.
+  /// Joins facets with the same vertices, each of which there are two, and makes walls
+  /// of those where one is.
   /// @returns whether every facet found its other side
   [[nodiscard]] bool join(std::vector<OpenFacet> &open);
   [[nodiscard]] OpenFacet open_facet(HalfFacet h, Index wall) const {

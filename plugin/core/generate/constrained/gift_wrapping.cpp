@@ -35,7 +35,8 @@ struct Box {
   Vector<3> low, high;
 };
 
-template <class Vertices> Box box_of(const ExactPoints &points, const Vertices &vertices) {
+template <class Vertices>
+Box box_of(const ExactPoints &points, const Vertices &vertices) {
   Box box{points.rounded(vertices[0]), points.rounded(vertices[0])};
   for (const Index v : vertices) {
     box.low = box.low.cwiseMin(points.rounded(v));
@@ -56,8 +57,8 @@ public:
     for (const Facet<3> &facet : half_.border)
       if (!push(turned(facet)))
         return std::nullopt;
-    const std::size_t most = base_cells + cells_per_item * (half_.vertices.size() +
-                                                            half_.border.size());
+    const std::size_t most =
+        base_cells + cells_per_item * (half_.vertices.size() + half_.border.size());
     while (!place_.empty()) {
       monitor.insist(0);
       const Facet<3> facet = front_.back();
@@ -73,7 +74,8 @@ public:
 
 private:
   /// A front that does not close is left: a polyhedron has fewer cells by far, save for
-  /// stacks of convex polygons, whose cells are as many as the square of their vertices.
+  /// stacks of convex polygons, whose cells are as many as the square of their
+  /// vertices.
   static constexpr std::size_t base_cells = 200, cells_per_item = 60;
 
   const ExactPoints &points_;
@@ -125,7 +127,8 @@ private:
                                 const std::vector<Index> &rejected) const {
     const auto [a, b, c] = facet;
     const auto is_candidate = [&, a = a, b = b, c = c](Index v) {
-      return v != a && v != b && v != c && std::ranges::find(rejected, v) == rejected.end() &&
+      return v != a && v != b && v != c &&
+             std::ranges::find(rejected, v) == rejected.end() &&
              points_.orientation(a, b, c, v) == Orientation::positive;
     };
     const auto &vertices = half_.vertices;

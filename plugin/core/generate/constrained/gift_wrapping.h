@@ -1,5 +1,6 @@
 #pragma once
-// Constrained Delaunay cells of a polyhedron, one after another from its border inwards.
+// Constrained Delaunay cells of a polyhedron, one after another from its border
+// inwards.
 
 #include "base/monitor.h"
 #include "generate/constrained/exact_points.h"
@@ -28,11 +29,12 @@ struct Wrapping {
 /// other that it sees.
 ///
 /// First without looking whether a new cell meets the front elsewhere: when the front
-/// closes, the cells are right nevertheless. They are positive, and together their border
-/// is that of the polyhedron, so that each point inside is covered as often as the border
-/// winds round it, which is once. Else again, looking.
+/// closes, the cells are right nevertheless. They are positive, and together their
+/// border is that of the polyhedron, so that each point inside is covered as often as
+/// the border winds round it, which is once. Else again, looking.
 /// @returns nothing if the front does not close
-[[nodiscard]] std::optional<Wrapping> wrapped(const ExactPoints &points, FacetSide &side,
-                                              const HalfCavity &half, Monitor &monitor);
+[[nodiscard]] std::optional<Wrapping> wrapped(const ExactPoints &points,
+                                              FacetSide &side, const HalfCavity &half,
+                                              Monitor &monitor);
 
 } // namespace anistar::generate

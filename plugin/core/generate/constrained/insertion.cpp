@@ -36,7 +36,8 @@ Index Insertion::locate(Index p, Index start) const {
     entered = next;
     c = next.cell();
   }
-  throw MeshingError("a point on an edge was not found in the mesh", points_.rounded(p));
+  throw MeshingError("a point on an edge was not found in the mesh",
+                     points_.rounded(p));
 }
 
 bool Insertion::is_in_conflict(Index c, Index p) const {
@@ -59,8 +60,9 @@ void Insertion::refuse_vertex(Index c, Index p) const {
   for (const Index v : mesh_.cell(c))
     if (points_.compare(v, p) == 0) {
       const auto [a, b, t] = points_.steiner(p);
-      throw MeshingError("point " + std::to_string(v) + " lies on the edge from point " +
-                             std::to_string(a) + " to point " + std::to_string(b) +
+      throw MeshingError("point " + std::to_string(v) +
+                             " lies on the edge from point " + std::to_string(a) +
+                             " to point " + std::to_string(b) +
                              ", which does not end there",
                          points_.rounded(p));
     }

@@ -11,7 +11,8 @@ namespace anistar::generate {
 
 class Insertion {
 public:
-  Insertion(const ExactPoints &points, GhostMesh &mesh) : points_(points), mesh_(mesh) {}
+  Insertion(const ExactPoints &points, GhostMesh &mesh)
+      : points_(points), mesh_(mesh) {}
 
   /// Inserts a point of the convex hull, found by a walk from a cell.
   /// @pre the mesh is Delaunay, without walls

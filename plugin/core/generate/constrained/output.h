@@ -8,7 +8,8 @@
 namespace anistar::generate {
 
 /// Cells with a region, walls and edges of segments that they have.
-[[nodiscard]] Tetrahedralisation output(const ExactPoints &points, const GhostMesh &mesh,
+[[nodiscard]] Tetrahedralisation output(const ExactPoints &points,
+                                        const GhostMesh &mesh,
                                         const FacetTriangles &facets,
                                         const PerCell<Index> &regions);
 

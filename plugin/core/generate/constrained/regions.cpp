@@ -125,7 +125,8 @@ class Labels {
 public:
   Labels(const ExactPoints &points, const GhostMesh &mesh, const Components &components)
       : points_(points), mesh_(mesh), components_(components),
-        of_component_(components.size(), outside), seeded_by_(components.size(), none) {}
+        of_component_(components.size(), outside), seeded_by_(components.size(), none) {
+  }
 
   void follow_rule(RegionRule rule, const std::vector<Seed> &seeds) {
     std::set<Index> taken;

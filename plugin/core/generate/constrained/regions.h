@@ -15,7 +15,8 @@ inline constexpr Index outside = none;
 /// one on that is no tag, by the connected component.
 /// @throws MeshingError if nothing is inside, a seed lies outside or on a facet, or two
 /// seeds with different tags lie in one region
-[[nodiscard]] PerCell<Index> regions_of(const ExactPoints &points, const GhostMesh &mesh,
+[[nodiscard]] PerCell<Index> regions_of(const ExactPoints &points,
+                                        const GhostMesh &mesh,
                                         const FacetTriangles &facets,
                                         const RegionChoice &choice);
 

@@ -15,7 +15,8 @@ double reach_of(const Vector<3> &u) { return u.cwiseAbs().maxCoeff(); }
 } // namespace
 
 SphereTest::SphereTest(const ExactPoints &points, const Cell<3> &cell, double error)
-    : points_(&points), cell_(cell), origin_(points.rounded(cell[0])), apart_(2 * error) {
+    : points_(&points), cell_(cell), origin_(points.rounded(cell[0])),
+      apart_(2 * error) {
   const Vector<3> u = points.rounded(cell[1]) - origin_,
                   v = points.rounded(cell[2]) - origin_,
                   w = points.rounded(cell[3]) - origin_;
@@ -25,8 +26,7 @@ SphereTest::SphereTest(const ExactPoints &points, const Cell<3> &cell, double er
             w.squaredNorm() * u.cross(v);
   const double U = reach_of(u) + apart_, V = reach_of(v) + apart_,
                W = reach_of(w) + apart_;
-  const double product = U * V * W, sum = U + V + W,
-               slope = V * W + U * W + U * V;
+  const double product = U * V * W, sum = U + V + W, slope = V * W + U * W + U * V;
   const double leading = 6 * product, normal = 6 * product * sum;
   const double leading_error = determinant_bound * leading + 6 * apart_ * slope;
   const double normal_error =

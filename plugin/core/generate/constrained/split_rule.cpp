@@ -46,7 +46,9 @@ SplitRule::SplitRule(const ExactPoints &points, const GhostMesh &mesh,
     is_acute_[v] = are_acute(directions[v]);
 }
 
-bool SplitRule::is_acute(Index v) const { return v < points_.n_given() && is_acute_[v]; }
+bool SplitRule::is_acute(Index v) const {
+  return v < points_.n_given() && is_acute_[v];
+}
 
 LinePart SplitRule::part_of(Index edge) const {
   const FacetTriangles::Edge &e = facets_.edges()[edge];
@@ -101,8 +103,8 @@ double SplitRule::near_reference(const LinePart &part, Index reference) const {
   return .5 * (part.low + part.high);
 }
 
-/// On the sphere about an acute end of the line through the reference point, so that the
-/// parts of lines that meet there become equally long.
+/// On the sphere about an acute end of the line through the reference point, so that
+/// the parts of lines that meet there become equally long.
 double SplitRule::round_acute_end(const LinePart &part, Index reference,
                                   bool at_from) const {
   const Line &line = facets_.lines()[part.line];
@@ -134,9 +136,9 @@ double SplitRule::fraction(const LinePart &part) const {
   const bool is_whole = part.from == line.from && part.to == line.to;
   if (from && to && is_whole)
     return middle;
-  const double at = !from && !to ? near_reference(part, reference)
-                                 : round_acute_end(part, reference,
-                                                   from && (!to || middle <= .5));
+  const double at =
+      !from && !to ? near_reference(part, reference)
+                   : round_acute_end(part, reference, from && (!to || middle <= .5));
   const double margin = least_part * (part.high - part.low);
   return std::clamp(at, part.low + margin, part.high - margin);
 }

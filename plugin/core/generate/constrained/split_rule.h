@@ -1,6 +1,6 @@
 #pragma once
-// Where a missing edge is divided: Si, Adaptive tetrahedral mesh generation by constrained
-// Delaunay refinement, 2008, section 4.
+// Where a missing edge is divided: Si, Adaptive tetrahedral mesh generation by
+// constrained Delaunay refinement, 2008, section 4.
 
 #include "generate/constrained/exact_points.h"
 #include "generate/constrained/facet_triangles.h"
