@@ -3,6 +3,7 @@
 #include "generate/constrained/delaunay.h"
 #include "generate/constrained/edge_recovery.h"
 #include "generate/constrained/facet_recovery.h"
+#include "generate/constrained/flat_cells.h"
 #include "generate/constrained/output.h"
 #include "generate/constrained/regions.h"
 
@@ -59,6 +60,13 @@ Constrained constrained_tetrahedralisation(const Plc &plc,
 
   monitor.enter("regions");
   PerCell<Index> regions = regions_of(points, mesh, facets, settings.regions);
+
+  monitor.enter("flat cells");
+  const auto flat = FlatCells(points, mesh, facets, regions)
+                        .remove(settings.facets_may_flip, monitor);
+  counts.peeled = flat.peeled;
+  counts.removed = flat.swapped;
+  counts.flat_left = flat.left;
   counts.predicates = points.counts().asked;
   counts.exact_predicates = points.counts().exact;
   return {output(points, mesh, facets, regions), counts};

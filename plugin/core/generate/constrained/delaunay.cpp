@@ -102,12 +102,12 @@ GhostMesh delaunay(const ExactPoints &points, std::span<const Index> vertices) {
   std::ranges::sort(cells, {}, [](const auto &entry) { return entry.first; });
 
   GhostMesh out(points.size());
-  for (const auto &[vertices, handle] : cells)
-    handle->info() = out.add(vertices);
+  for (const auto &[cell, handle] : cells)
+    handle->info() = out.add(cell);
   const auto half_facet = [&](Delaunay::Cell_handle c, int i) {
     return HalfFacet(c->info(), *out.index_of(c->info(), c->vertex(i)->info()));
   };
-  for (const auto &[vertices, handle] : cells)
+  for (const auto &[cell, handle] : cells)
     for (int i = 0; i < 4; ++i)
       out.join(half_facet(handle, i),
                half_facet(handle->neighbor(i), mesh.mirror_index(handle, i)));

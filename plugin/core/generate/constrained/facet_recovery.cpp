@@ -154,8 +154,7 @@ void FacetRecovery::carve(Index crossed, Monitor &monitor) {
   const std::vector<Index> cavity = collect_cavity(crossed);
   ++counts_.cavities;
   counts_.largest_cavity = std::max(counts_.largest_cavity, cavity.size());
-  std::vector<OpenFacet> outside;
-  auto [above, below] = halves(cavity, outside);
+  auto [above, below] = halves(cavity);
   auto upper = wrapped(points_, side_, above, monitor);
   if (!upper)
     give_up("leaves a cavity above it that cannot be filled");
@@ -166,7 +165,8 @@ void FacetRecovery::carve(Index crossed, Monitor &monitor) {
     give_up("leaves a cavity below it that cannot be filled");
   counts_.rejections += upper->rejections + lower->rejections;
   upper->cells.insert(upper->cells.end(), lower->cells.begin(), lower->cells.end());
-  replace(cavity, upper->cells, outside);
+  if (!mesh_.replace(cavity, upper->cells))
+    give_up("leaves a cavity that does not close");
 }
 
 bool FacetRecovery::is_crossed(HalfFacet h) {
@@ -200,18 +200,16 @@ std::vector<Index> FacetRecovery::collect_cavity(Index crossed) {
   return cavity;
 }
 
-/// The parts of a cavity above and below the plane, and what is around both.
-std::array<HalfCavity, 2> FacetRecovery::halves(const std::vector<Index> &cavity,
-                                                std::vector<OpenFacet> &outside) {
+/// The parts of a cavity above and below the plane.
+std::array<HalfCavity, 2> FacetRecovery::halves(const std::vector<Index> &cavity) {
   HalfCavity above{{}, {}, true}, below{{}, {}, false};
   std::vector<Index> vertices;
   for (const Index c : cavity) {
     const Cell<3> &cell = mesh_.cell(c);
     vertices.insert(vertices.end(), cell.begin(), cell.end());
     for (std::size_t i = 0; i < 4; ++i) {
-      const HalfFacet h(c, i), other = mesh_.opposite(h);
-      const bool is_inside = in_cavity_.has(other.cell());
-      if (is_inside && mesh_.wall(h) == none)
+      const HalfFacet h(c, i);
+      if (in_cavity_.has(mesh_.opposite(h).cell()) && mesh_.wall(h) == none)
         continue;
       if (is_crossed(h))
         refuse_crossing(h);
@@ -219,8 +217,6 @@ std::array<HalfCavity, 2> FacetRecovery::halves(const std::vector<Index> &cavity
       const bool is_above =
           std::ranges::any_of(facet, [&](Index v) { return side_.is_above(v); });
       (is_above ? above : below).border.push_back(facet);
-      outside.push_back(
-          {sorted(facet), is_inside ? HalfFacet() : other, mesh_.wall(h)});
     }
   }
   std::ranges::sort(vertices);
@@ -234,39 +230,20 @@ std::array<HalfCavity, 2> FacetRecovery::halves(const std::vector<Index> &cavity
   return {above, below};
 }
 
-void FacetRecovery::replace(const std::vector<Index> &cavity,
-                            const std::vector<Cell<3>> &cells,
-                            std::vector<OpenFacet> &outside) {
-  for (const Index c : cavity)
-    mesh_.remove(c);
-  for (const Cell<3> &cell : cells) {
-    const Index made = mesh_.add(cell);
-    for (std::size_t i = 0; i < 4; ++i)
-      outside.push_back(mesh_.open_facet({made, i}, none));
-  }
-  if (!mesh_.join(outside))
-    give_up("leaves a cavity that does not close");
-}
-
-Index FacetRecovery::facet_of_plane(Index plane) const {
-  const auto &triangles = facets_.triangles();
-  const auto at = std::ranges::find(triangles, plane, &FacetTriangles::Triangle::plane);
-  return at == triangles.end() ? none : at->facet;
-}
-
 void FacetRecovery::refuse_crossing(HalfFacet h) const {
   const Facet<3> facet = mesh_.facet(h);
   Vector<3> middle = Vector<3>::Zero();
   for (const Index v : facet)
     middle += points_.rounded(v) / 3;
-  throw MeshingError("facet " + std::to_string(facet_of_plane(plane_)) +
-                         " crosses facet " +
-                         std::to_string(facet_of_plane(mesh_.wall(h))),
+  const auto facet_of = facets_.facets_of_planes();
+  throw MeshingError("facet " + std::to_string(facet_of[plane_]) + " crosses facet " +
+                         std::to_string(facet_of[mesh_.wall(h)]),
                      middle);
 }
 
 void FacetRecovery::give_up(const std::string &why) const {
-  throw MeshingError("facet " + std::to_string(facet_of_plane(plane_)) + " " + why,
+  throw MeshingError("facet " + std::to_string(facets_.facets_of_planes()[plane_]) +
+                         " " + why,
                      points_.rounded(facets_.planes()[plane_][0]));
 }
 

@@ -58,14 +58,10 @@ private:
 
   void carve(Index crossed, Monitor &monitor);
   [[nodiscard]] std::vector<Index> collect_cavity(Index crossed);
-  [[nodiscard]] std::array<HalfCavity, 2> halves(const std::vector<Index> &cavity,
-                                                 std::vector<OpenFacet> &outside);
-  void replace(const std::vector<Index> &cavity, const std::vector<Cell<3>> &cells,
-               std::vector<OpenFacet> &outside);
+  [[nodiscard]] std::array<HalfCavity, 2> halves(const std::vector<Index> &cavity);
   [[nodiscard]] bool is_crossed(HalfFacet h);
   [[noreturn]] void refuse_crossing(HalfFacet h) const;
   [[noreturn]] void give_up(const std::string &why) const;
-  [[nodiscard]] Index facet_of_plane(Index plane) const;
 };
 
 } // namespace anistar::generate

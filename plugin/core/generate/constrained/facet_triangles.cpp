@@ -89,6 +89,14 @@ std::vector<std::vector<Index>> FacetTriangles::triangles_by_plane() const {
   return out;
 }
 
+std::vector<Index> FacetTriangles::facets_of_planes() const {
+  std::vector<Index> out(planes_.size(), none);
+  for (const Triangle &t : triangles_)
+    if (t.plane != none)
+      out[t.plane] = t.facet;
+  return out;
+}
+
 /// The triangle that continues the facet in the same sense, `none` at a segment, where
 /// there are more than two, and where the other one is turned over.
 Index FacetTriangles::same_facet_across(const Triangle &triangle,

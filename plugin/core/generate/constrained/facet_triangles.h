@@ -59,6 +59,9 @@ public:
   /// The triangles of each plane.
   [[nodiscard]] std::vector<std::vector<Index>> triangles_by_plane() const;
 
+  /// The facet that each plane is part of.
+  [[nodiscard]] std::vector<Index> facets_of_planes() const;
+
   /// Joins triangles of one facet that lie exactly on one plane, across edges that are
   /// no segments, and requires all other edges.
   void find_planes(ExactPoints &points);

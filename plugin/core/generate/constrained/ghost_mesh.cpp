@@ -76,6 +76,33 @@ bool GhostMesh::join(std::vector<OpenFacet> &open) {
   return true;
 }
 
+std::optional<std::vector<Index>> GhostMesh::replace(std::span<const Index> old,
+                                                     std::span<const Cell<3>> cells) {
+  visits_.start(cells_.size());
+  for (const Index c : old)
+    visits_.visit(c);
+  std::vector<OpenFacet> open;
+  for (const Index c : old)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const HalfFacet h(c, i), other = opposite(h);
+      if (!visits_.has(other.cell()))
+        open.push_back({sorted(facet(h)), other, wall(h)});
+      else if (wall(h) != none) // what is told of both sides is told twice
+        open.push_back({sorted(facet(h)), HalfFacet(), wall(h)});
+    }
+  for (const Index c : old)
+    remove(c);
+  std::vector<Index> made;
+  for (const Cell<3> &cell : cells) {
+    made.push_back(add(cell));
+    for (std::size_t i = 0; i < 4; ++i)
+      open.push_back(open_facet({made.back(), i}, none));
+  }
+  if (!join(open))
+    return std::nullopt;
+  return made;
+}
+
 const std::vector<Index> &GhostMesh::star(Index vertex) const {
   visits_.start(cells_.size());
   star_.assign(1, vertex_cell_[vertex]);

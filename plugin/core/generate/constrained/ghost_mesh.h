@@ -87,6 +87,10 @@ public:
   /// of those where one is.
   /// @returns whether every facet found its other side
   [[nodiscard]] bool join(std::vector<OpenFacet> &open);
+  /// Puts other cells in the place of some; walls stay where they were.
+  /// @returns the new ones, or nothing if they do not fit, and the mesh is broken
+  [[nodiscard]] std::optional<std::vector<Index>>
+  replace(std::span<const Index> old, std::span<const Cell<3>> cells);
   [[nodiscard]] OpenFacet open_facet(HalfFacet h, Index wall) const {
     return {sorted(facet(h)), h, wall};
   }

@@ -12,11 +12,7 @@ public:
   Output(const ExactPoints &points, const GhostMesh &mesh, const FacetTriangles &facets,
          const PerCell<Index> &regions)
       : points_(points), mesh_(mesh), facets_(facets), regions_(regions),
-        facet_of_plane_(facets.planes().size(), none) {
-    for (const FacetTriangles::Triangle &t : facets.triangles())
-      if (t.plane != none)
-        facet_of_plane_[t.plane] = t.facet;
-  }
+        facet_of_plane_(facets.facets_of_planes()) {}
 
   Tetrahedralisation make() {
     for (Index v = 0; v < points_.size(); ++v)
