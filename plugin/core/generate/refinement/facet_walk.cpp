@@ -93,7 +93,7 @@ SpaceWalk walk_in_space(const WalledMesh &mesh, Index start, const Vector<3> &x)
       exit.consider(i, n.dot(origin - a), n.dot(x - a));
     }
     if (!exit.exists())
-      return {.cell = c};
+      return {c, {}};
     const HalfFacet through(c, exit.side);
     if (mesh.wall(through) != none)
       return {.wall = through};
