@@ -281,6 +281,8 @@ class ShapeKind(enum.Enum):
 
     polyhedron = 1
 
+    faceted = 2
+
 class DomainShape:
     """What the facets of a geometry mean."""
 
@@ -578,3 +580,22 @@ def surface_loops(
     n_facets: int,
 ) -> tuple[NDArray[numpy.int32], NDArray[numpy.int64], NDArray[numpy.int64]]:
     """The loops around facets of triangles: (indices, loop_starts, facet_starts)."""
+
+def constrained_tetrahedra(
+    *,
+    points: NDArray[numpy.float64],
+    triangles: NDArray[numpy.int32],
+    triangle_facets: NDArray[numpy.int32],
+    segments: NDArray[numpy.int32],
+    kept_points: NDArray[numpy.int32],
+    seeds: NDArray[numpy.float64],
+    seed_tags: NDArray[numpy.int32],
+    holes: NDArray[numpy.float64],
+    rule: str,
+    facets_may_flip: bool,
+    max_seconds: float,
+    callback: object | None,
+) -> dict[str, Any]:
+    """
+    Constrained Delaunay tetrahedra of a piecewise linear complex, as arrays by name.
+    """

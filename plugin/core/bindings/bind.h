@@ -23,6 +23,7 @@ void bind_facet_pairs(nb::module_ &module);
 void bind_locator(nb::module_ &module);
 void bind_nearest(nb::module_ &module);
 
+void bind_constrained(nb::module_ &module);
 void bind_check_plc(nb::module_ &module);
 
 void bind_supermesh(nb::module_ &module);
@@ -35,5 +36,6 @@ void bind_facet_shapes(nb::module_ &module);
 void bind_surface(nb::module_ &module);
 
 void bind_facets(nb::module_ &module);
+void bind_plane(nb::module_ &module);
 
 } // namespace anistar::bindings

@@ -15,6 +15,7 @@ NB_MODULE(_core, module) {
   bind_facet_pairs(module);
   bind_locator(module);
   bind_nearest(module);
+  bind_constrained(module);
   bind_check_plc(module);
   bind_supermesh(module);
   bind_symmetric_system(module);
@@ -24,4 +25,5 @@ NB_MODULE(_core, module) {
   bind_facet_shapes(module);
   bind_surface(module);
   bind_facets(module);
+  bind_plane(module);
 }
