@@ -578,3 +578,6 @@ def surface_loops(
     n_facets: int,
 ) -> tuple[NDArray[numpy.int32], NDArray[numpy.int64], NDArray[numpy.int64]]:
     """The loops around facets of triangles: (indices, loop_starts, facet_starts)."""
+
+def first_at_place(points: NDArray[numpy.float64]) -> NDArray[numpy.int32]:
+    """Of each point the first one that is exactly where it is."""
