@@ -601,3 +601,90 @@ def constrained_tetrahedra(
     """
 def first_at_place(points: NDArray[numpy.float64]) -> NDArray[numpy.int32]:
     """Of each point the first one that is exactly where it is."""
+
+class Flaw(enum.Enum):
+    """What can be wrong with a complex."""
+
+    out_of_range = 0
+    repeated_point = 1
+    empty_edge = 2
+    repeated_edge = 3
+    degenerate_triangle = 4
+    repeated_triangle = 5
+    overlap = 6
+    crossing = 7
+    touching = 8
+    point_on_edge = 9
+    point_on_facet = 10
+    open_border = 11
+    thin_triangle = 12
+    near_miss = 13
+    crowded_edge = 14
+
+class Problem:
+    """Something that is wrong with a complex."""
+
+    @property
+    def flaw(self) -> Flaw: ...
+    @property
+    def triangles(self) -> list[int]: ...
+    @property
+    def edges(self) -> list[tuple[int, int]]: ...
+    @property
+    def points(self) -> list[int]: ...
+    @property
+    def where(self) -> list[float]: ...
+    @property
+    def measure(self) -> float: ...
+
+class Problems:
+    """What is wrong with a complex, a few of a kind."""
+
+    @property
+    def listed(self) -> list[Problem]: ...
+    @property
+    def totals(self) -> list[int]: ...
+    @property
+    def is_complete(self) -> bool: ...
+
+def check_plc(
+    points: NDArray[numpy.float64],
+    triangles: NDArray[numpy.int32],
+    triangle_facets: NDArray[numpy.int32],
+    segments: NDArray[numpy.int32],
+    points_kept: NDArray[numpy.int32],
+    listed: int,
+    near_distance: float,
+) -> Problems:
+    """What is wrong with a complex in space; `near_distance` in diagonals."""
+
+def check_pslg(
+    points: NDArray[numpy.float64],
+    segments: NDArray[numpy.int32],
+    points_kept: NDArray[numpy.int32],
+    listed: int,
+    near_distance: float,
+) -> Problems:
+    """What is wrong with segments and points in the plane."""
+
+def cut_triangles(
+    points: NDArray[numpy.float64], triangles: NDArray[numpy.int32]
+) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.int32]]:
+    """
+    Points, triangles and the source of each, cut where triangles meet others.
+    """
+
+def turned_triangles(
+    points: NDArray[numpy.float64], triangles: NDArray[numpy.int32]
+) -> tuple[NDArray[numpy.uint8], int, int]:
+    """
+    Which triangles to turn for an outer side, and the numbers of parts that are open and that have one side only.
+    """
+
+def wrap_triangles(
+    points: NDArray[numpy.float64],
+    triangles: NDArray[numpy.int32],
+    alpha: float,
+    offset: float,
+) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.int32]]:
+    """A closed surface around triangles."""
