@@ -3,6 +3,14 @@
 from .given import as_plc
 from .plc import PLC
 from .region import Region
-from .surface_files import SurfaceReport, read_plc, read_plc_with_report
+from .surface_files import SurfaceReport, read_plc, read_plc_with_report, write_plc
 
-__all__ = ["PLC", "Region", "SurfaceReport", "as_plc", "read_plc", "read_plc_with_report"]
+__all__ = [
+    "PLC",
+    "Region",
+    "SurfaceReport",
+    "as_plc",
+    "read_plc",
+    "read_plc_with_report",
+    "write_plc",
+]

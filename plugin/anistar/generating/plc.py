@@ -26,6 +26,7 @@ from .plc_arrays import (
     as_regions,
     as_rows,
     as_tags,
+    require_different,
     require_in_range,
 )
 from .region import Region
@@ -180,6 +181,7 @@ class PLC(Told):
         if places.shape[1] != 3:
             raise ValueError("a surface has points (n, 3)")
         require_in_range("triangles", rows, len(places))
+        require_different(rows)
         given = as_tags(tags, "tags", len(rows))
         owners = planar_facets(places, rows, given, flat_angle=flat_angle, flatness=flatness)
         first = np.unique(owners, return_index=True)[1]

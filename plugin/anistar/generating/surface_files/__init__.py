@@ -29,8 +29,9 @@ from . import (
 from .assembly import Planar, SurfaceReport, assembled
 from .of_objects import surface_of_meshio
 from .raw_surface import RawSurface
+from .writing import write_plc
 
-__all__ = ["SurfaceReport", "read_plc", "read_plc_with_report"]
+__all__ = ["SurfaceReport", "read_plc", "read_plc_with_report", "write_plc"]
 
 _log = logging.getLogger(__name__)
 

@@ -4,7 +4,8 @@ Normals, colours and texture coordinates that a prefix of the word OFF announces
 
 References
 ----------
-Geomview manual, "OFF Files": [ST][C][N][4][n]OFF [BINARY]; binary files are big endian.
+Geomview manual, "OFF Files": [ST][C][N][4][n]OFF [BINARY]; binary files are big endian, but some
+programs write them in the order of their CPU, which the counts show.
 """
 
 from __future__ import annotations
@@ -75,8 +76,11 @@ def _first(lines: Lines, words: list[str], n: int) -> list[float]:
 
 def _binary(data: bytes, at: int, width: int) -> RawSurface:
     cursor = Cursor(data, ">")
-    cursor.at = data.find(b"\n", at) + 1
+    cursor.at = start = data.find(b"\n", at) + 1
     n_points, n_faces, _ = cursor.take("i4", _N_COUNTS).tolist()
+    if not 0 <= n_points * width * 4 <= len(data):  # CGAL and others write as their CPU does
+        cursor.order, cursor.at = "<", start
+        n_points, n_faces, _ = cursor.take("i4", _N_COUNTS).tolist()
     points = cursor.take("f4", n_points * width).reshape(-1, width)[:, :3]
     faces, n_coloured = _binary_faces(cursor, n_faces)
     raw = RawSurface(points.astype(np.float64), faces)
