@@ -599,3 +599,5 @@ def constrained_tetrahedra(
     """
     Constrained Delaunay tetrahedra of a piecewise linear complex, as arrays by name.
     """
+def first_at_place(points: NDArray[numpy.float64]) -> NDArray[numpy.int32]:
+    """Of each point the first one that is exactly where it is."""
