@@ -229,7 +229,7 @@ private:
     return -2 - piece;
   }
   [[nodiscard]] std::array<Index, 3> facets_of(const Pair &pair) const {
-    const auto [a, b] = std::minmax(owner(pair[0]), owner(pair[1]));
+    const auto [a, b] = std::minmax({owner(pair[0]), owner(pair[1])});
     return {a, b, none};
   }
 
