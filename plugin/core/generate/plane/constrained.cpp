@@ -215,8 +215,7 @@ private:
 
   [[nodiscard]] std::string name_of(Index s) const {
     const auto [a, b] = complex_.segments[s];
-    return std::to_string(s) + " (" + std::to_string(a) + ", " + std::to_string(b) +
-           ")";
+    return "(" + std::to_string(a) + ", " + std::to_string(b) + ")";
   }
 };
 
