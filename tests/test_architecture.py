@@ -25,6 +25,7 @@ CORE_FOLDERS = [
     "plane",
     "surface",
     "volume",
+    "generate",
 ]
 # 2D and 3D know nothing of each other.
 APART = [("plane", "surface"), ("plane", "volume")]
@@ -43,7 +44,7 @@ PACKAGE_ROOMS = [
     {"formats"},
     {"judging", "transfer"},
     {"pictures", "remeshing"},
-    {"views"},
+    {"generating", "views"},
     {"loops"},
     {"adapters", "runs"},
     {"demo"},

@@ -281,6 +281,8 @@ class ShapeKind(enum.Enum):
 
     polyhedron = 1
 
+    faceted = 2
+
 class DomainShape:
     """What the facets of a geometry mean."""
 
@@ -548,3 +550,52 @@ class Surface3:
         """
         The (n, 3, 3) curvature tensors at the points: principal curvatures with their directions, of the most curved patch; zero off the surfaces.
         """
+
+def triangulated_facets(
+    points: NDArray[numpy.float64],
+    indices: NDArray[numpy.int32],
+    loop_starts: NDArray[numpy.int64],
+    facet_starts: NDArray[numpy.int64],
+    edges: NDArray[numpy.int32],
+    flatness: float,
+) -> tuple[NDArray[numpy.int32], NDArray[numpy.int32], NDArray[numpy.float64]]:
+    """
+    The triangles of polygon facets, the facet of each, and how far the points of each facet lie from its plane.
+    """
+
+def planar_facets(
+    points: NDArray[numpy.float64],
+    triangles: NDArray[numpy.int32],
+    tags: NDArray[numpy.int32],
+    degrees: float,
+    distance: float,
+    rounding: float,
+) -> NDArray[numpy.int32]:
+    """The planar facet of each triangle of a surface."""
+
+def surface_loops(
+    points: NDArray[numpy.float64],
+    triangles: NDArray[numpy.int32],
+    owners: NDArray[numpy.int32],
+    n_facets: int,
+) -> tuple[NDArray[numpy.int32], NDArray[numpy.int64], NDArray[numpy.int64]]:
+    """The loops around facets of triangles: (indices, loop_starts, facet_starts)."""
+
+def constrained_tetrahedra(
+    *,
+    points: NDArray[numpy.float64],
+    triangles: NDArray[numpy.int32],
+    triangle_facets: NDArray[numpy.int32],
+    segments: NDArray[numpy.int32],
+    kept_points: NDArray[numpy.int32],
+    seeds: NDArray[numpy.float64],
+    seed_tags: NDArray[numpy.int32],
+    holes: NDArray[numpy.float64],
+    rule: str,
+    facets_may_flip: bool,
+    max_seconds: float,
+    callback: object | None,
+) -> dict[str, Any]:
+    """
+    Constrained Delaunay tetrahedra of a piecewise linear complex, as arrays by name.
+    """

@@ -19,6 +19,7 @@ from .commands import (
     convert,
     demo,
     doctor,
+    generate,
     loop,
     metric,
     remesh,
@@ -32,7 +33,7 @@ from .streams import complain, open_closed_streams, readers_may_leave
 OK, FAILED, BAD_INPUT = 0, 1, 2
 
 COMMANDS = (
-    adapt, metric, remesh, transfer, loop, study, report, check, convert, doctor, demo,
+    generate, adapt, metric, remesh, transfer, loop, study, report, check, convert, doctor, demo,
 )  # fmt: skip
 
 EXIT_CODES = "exit codes: 0 done, 1 failed (or a check found problems), 2 wrong usage or input"

@@ -152,7 +152,7 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "shape": (
         str,
         "smooth (default): the facets sample smooth curves and surfaces; "
-        "polyhedron: they are the domain",
+        "polyhedron: they are the domain; faceted: the same, flat to the accuracy of floats",
     ),
     "ridge_angle": (float, "angle in degrees from which a corner is kept (Mmg: -ar)"),
     "max_vertices": (int, "stop at this number of vertices"),
@@ -181,6 +181,33 @@ _REMESH: dict[str, tuple[Any, str]] = {
     "threads": (int, "that work side by side; the result does not depend on it"),
 }
 
+_GENERATE: dict[str, tuple[Any, str]] = {
+    "method": (
+        str,
+        "remesh (default): the mesher of anistar remesh; refine: Delaunay refinement with proved "
+        "bounds; constrained: no more points than the facets need",
+    ),
+    "shape": (
+        str,
+        "polyhedron (default): the facets are the domain; smooth: samples of smooth surfaces",
+    ),
+    "ridge_angle": (float, "angle in degrees from which a smooth surface has a ridge"),
+    "inside": (str, "what is meshed: regions (default), winding or nonzero"),
+    "repair": (str, "what may be changed of what is wrong: none (default), orient, stitch, resolve"),
+    "bound": (float, "of refine: largest ratio of circumradius and shortest edge"),
+    "sliver_dihedral": (float, "of refine: dihedral angle in degrees below which cells are slivers"),
+    "size_at": (_size_at, "largest sizes at facets or regions, by name or tag: wall=0.1,hole=0.02"),
+    "growth": (float, "growth of sizes from edge to edge (default 1.5)"),
+    "follow_widths": (
+        _switch,
+        "keep sizes below the widths of facets: on or off (default: on where there is no size)",
+    ),
+    "max_vertices": (int, "stop at this number of vertices"),
+    "max_seconds": (float, "stop after this time"),
+    "seed": (int, "of random choices"),
+    "threads": (int, "that work side by side; the result does not depend on it"),
+}
+
 _REPEATED = ("frozen_tags", "size_at")
 """Flags that add to each other."""
 
@@ -200,6 +227,20 @@ def add_metric_options(parser: argparse.ArgumentParser, *, without: Sequence[str
 def add_remesh_options(parser: argparse.ArgumentParser) -> None:
     """Add the flags of `RemeshOptions`."""
     _add(parser.add_argument_group("remesh"), _REMESH)
+
+
+def add_generate_options(parser: argparse.ArgumentParser) -> None:
+    """Add the flags of `GenerateOptions`."""
+    _add(parser.add_argument_group("generate"), _GENERATE)
+
+
+def generate_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return the options of `generate` that were given as flags."""
+    given = vars(arguments)
+    options = {name: given[name] for name in _GENERATE if name in given}
+    if "size_at" in options:
+        options["size_at"] = dict(options["size_at"])
+    return options
 
 
 def add_outside_option(parser: argparse.ArgumentParser, default: str) -> None:
@@ -248,7 +289,7 @@ def canonical_flags(words: Sequence[str]) -> list[str]:
         name = our_name(flag.lstrip("-").replace("-", "_"), MMG)
         if not flag.startswith("-") or flag == "-p":
             found.append(word)
-        elif name in (*_METRIC, *_REMESH):
+        elif name in (*_METRIC, *_REMESH, *_GENERATE):
             alone = not equals and name in _OPTIONAL_VALUE
             if alone and (not rest or rest[0] not in _OPTIONAL_VALUE[name]):
                 equals, value = "=", "on"

@@ -269,9 +269,9 @@ def certify(
         Metric at the points, in 1 / length**2.
     threads : int
         Threads to use; the certificate does not depend on it.
-    shape : "smooth" or "polyhedron"
+    shape : "smooth", "polyhedron" or "faceted"
         What the facets of the mesh mean to `surface_ok`, as in `RemeshOptions`: with
-        "polyhedron" every facet is judged by its own plane.
+        the others every facet is judged by its own plane.
     ridge_angle : float
         Degrees, as in `RemeshOptions`.
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from .. import _core
 
-Shape = Literal["smooth", "polyhedron"]
+Shape = Literal["smooth", "polyhedron", "faceted"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -16,7 +16,7 @@ class Skin:
 
     Parameters
     ----------
-    shape : "smooth" or "polyhedron"
+    shape : "smooth", "polyhedron" or "faceted"
         As in `RemeshOptions`.
     ridge_angle : float
         Degrees; a smooth boundary has a corner (in 3D: a ridge) where it turns by at least this.
@@ -26,8 +26,9 @@ class Skin:
     ridge_angle: float = 45.0
 
     def __post_init__(self) -> None:
-        if self.shape not in ("smooth", "polyhedron"):
-            raise ValueError(f'shape must be "smooth" or "polyhedron", got {self.shape!r}')
+        if self.shape not in get_args(Shape):
+            words = ", ".join(f'"{word}"' for word in get_args(Shape))
+            raise ValueError(f"shape must be one of {words}, got {self.shape!r}")
         if not 0 < self.ridge_angle <= 180:
             raise ValueError(f"ridge_angle must be in (0, 180] degrees, got {self.ridge_angle}")
 

@@ -67,12 +67,14 @@ class RemeshOptions:
         more. None takes every metric as it is.
     frozen_tags : sequence of int or str
         Facets with these tags, or these names, are kept as they are.
-    shape : "smooth" or "polyhedron"
+    shape : "smooth", "polyhedron" or "faceted"
         What the facets of the geometry mean. "smooth": samples of smooth curves and surfaces,
         on which new points are placed. "polyhedron": they are the domain. Every point (in 3D:
         every edge) where they turn at all is a corner (a ridge), so that area and volume stay
         as they are to round-off; `ridge_angle` and `hausdorff_number` have nothing to decide, and
-        `project` is refused.
+        `project` is refused. "faceted": a polyhedron whose points are off the planes of its facets
+        by round-off, as those of an STL in single precision are. In 3D facets of one tag between
+        given edges are one plane, and turns inside are no ridges.
     ridge_angle : float
         Degrees; a smooth boundary has a corner (in 3D: a ridge) where it turns by at least this.
         In 3D a ridge whose angle falls below goes on as long as it turns clearly more than the

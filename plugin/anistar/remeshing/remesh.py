@@ -177,10 +177,10 @@ def _remeshed(
 def _check_call(
     mesh: Mesh, geometry: Mesh, project: Project | None, options: RemeshOptions
 ) -> None:
-    if options.shape == "polyhedron" and project is not None:
+    if options.shape != "smooth" and project is not None:
         raise ValueError(
-            'project moves points off the facets, which are the domain with shape="polyhedron": '
-            "leave one of the two out"
+            f'project moves points off the facets, which are the domain with shape="{options.shape}'
+            '": leave one of the two out'
         )
     if geometry.dim != mesh.dim:
         raise ValueError(f"the geometry has dimension {geometry.dim}, the mesh {mesh.dim}")

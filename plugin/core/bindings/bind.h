@@ -23,6 +23,9 @@ void bind_facet_pairs(nb::module_ &module);
 void bind_locator(nb::module_ &module);
 void bind_nearest(nb::module_ &module);
 
+void bind_constrained(nb::module_ &module);
+void bind_check_plc(nb::module_ &module);
+
 void bind_supermesh(nb::module_ &module);
 void bind_symmetric_system(nb::module_ &module);
 
@@ -31,5 +34,8 @@ void bind_remesh_result(nb::module_ &module);
 void bind_remesh(nb::module_ &module);
 void bind_facet_shapes(nb::module_ &module);
 void bind_surface(nb::module_ &module);
+
+void bind_facets(nb::module_ &module);
+void bind_plane(nb::module_ &module);
 
 } // namespace anistar::bindings

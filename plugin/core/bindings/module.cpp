@@ -15,6 +15,8 @@ NB_MODULE(_core, module) {
   bind_facet_pairs(module);
   bind_locator(module);
   bind_nearest(module);
+  bind_constrained(module);
+  bind_check_plc(module);
   bind_supermesh(module);
   bind_symmetric_system(module);
   bind_remesh_settings(module); // and what is told in their terms
@@ -22,4 +24,6 @@ NB_MODULE(_core, module) {
   bind_remesh(module);
   bind_facet_shapes(module);
   bind_surface(module);
+  bind_facets(module);
+  bind_plane(module);
 }

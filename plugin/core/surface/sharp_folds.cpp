@@ -30,6 +30,8 @@ public:
       : in_(input), folds_(folds), others_(others), is_sharp_(folds.size(), false) {}
 
   std::vector<bool> run() {
+    if (in_.shape.is_faceted())
+      return std::move(is_sharp_);
     const double strong = in_.shape.sharp_turn();
     std::vector<std::size_t> weak;
     for (std::size_t k = 0; k < folds_.size(); ++k)

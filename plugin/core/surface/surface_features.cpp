@@ -196,6 +196,8 @@ private:
     }
     for (std::size_t f = 0; f < in_.facets.size(); ++f) {
       Patch &patch = out_.patches[patch_of(f)];
+      if (in_.shape.is_faceted())
+        break;
       const double extent = (box[patch_of(f)].high - box[patch_of(f)].low).maxCoeff();
       for (Index v : in_.facets[f])
         patch.is_planar =

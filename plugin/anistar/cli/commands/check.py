@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from ...base.arrays import Floats
 from ...formats import ReadReport, read, read_metric, read_with_report, write
 from ...judging.cell_arrays import cell_arrays
 from ...judging.certificate import Certificate, certify
 from ...judging.quality import quality
-from ...judging.skin import Skin
+from ...judging.skin import Shape, Skin
 from ...meshes.mesh import Mesh
 from ...meshes.validation import validate
 from ...meshes.violations import Violation
@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--shape",
-        choices=("smooth", "polyhedron"),
+        choices=get_args(Shape),
         default=Skin().shape,
         help="what the facets mean to surface stars: samples of smooth curves and surfaces, or "
         "the domain itself (default smooth)",

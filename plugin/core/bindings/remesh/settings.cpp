@@ -9,7 +9,8 @@ namespace {
 void bind_domain_shape(nb::module_ &module) {
   nb::enum_<ShapeKind>(module, "ShapeKind")
       .value("smooth", ShapeKind::smooth)
-      .value("polyhedron", ShapeKind::polyhedron);
+      .value("polyhedron", ShapeKind::polyhedron)
+      .value("faceted", ShapeKind::faceted);
   nb::class_<DomainShape>(module, "DomainShape", "What the facets of a geometry mean.")
       .def(nb::init<>())
       .def_rw("kind", &DomainShape::kind)

@@ -1,0 +1,75 @@
+#include "generate/constrained/constrained.h"
+
+#include "generate/constrained/delaunay.h"
+#include "generate/constrained/edge_recovery.h"
+#include "generate/constrained/facet_recovery.h"
+#include "generate/constrained/flat_cells.h"
+#include "generate/constrained/output.h"
+#include "generate/constrained/regions.h"
+
+namespace anistar::generate {
+namespace {
+
+/// The points that must be vertices of the mesh.
+std::vector<Index> points_in_use(const Plc &plc, const std::vector<Index> &kept) {
+  std::vector<bool> is_used(plc.points.size(), false);
+  for (const Facet<3> &triangle : plc.triangles)
+    for (const Index v : triangle)
+      is_used[v] = true;
+  for (const Segment &segment : plc.segments)
+    for (const Index v : segment)
+      is_used[v] = true;
+  for (const Index v : kept)
+    is_used[v] = true;
+  std::vector<Index> used;
+  for (std::size_t v = 0; v < is_used.size(); ++v)
+    if (is_used[v])
+      used.push_back(static_cast<Index>(v));
+  return used;
+}
+
+} // namespace
+
+Constrained constrained_tetrahedralisation(const Plc &plc,
+                                           const ConstrainedSettings &settings,
+                                           Monitor &monitor) {
+  ConstrainedCounts counts;
+  monitor.enter("Delaunay mesh");
+  ExactPoints points(plc.points);
+  GhostMesh mesh = delaunay(points, points_in_use(plc, settings.kept_points));
+
+  monitor.enter("edges");
+  FacetTriangles facets(plc);
+  FacetFlips flips(points, mesh, facets);
+  if (settings.facets_may_flip)
+    flips.flip_missing_edges();
+  facets.find_planes(points);
+  EdgeRecovery edges(points, mesh, facets, settings.facets_may_flip ? &flips : nullptr);
+  const auto [missing, on_flat_lines] = edges.run(monitor);
+  counts.missing_edges = missing;
+  counts.steiner_points = points.steiner_points().size();
+  counts.steiner_points_in_facets = on_flat_lines;
+  counts.flips = flips.n_flips();
+
+  monitor.enter("facets");
+  const auto recovered = FacetRecovery(points, mesh, facets).run(monitor);
+  counts.missing_facets = recovered.missing;
+  counts.cavities = recovered.cavities;
+  counts.largest_cavity = recovered.largest_cavity;
+  counts.rejections = recovered.rejections;
+
+  monitor.enter("regions");
+  PerCell<Index> regions = regions_of(points, mesh, facets, settings.regions);
+
+  monitor.enter("flat cells");
+  const auto flat = FlatCells(points, mesh, facets, regions)
+                        .remove(settings.facets_may_flip, monitor);
+  counts.peeled = flat.peeled;
+  counts.removed = flat.swapped;
+  counts.flat_left = flat.left;
+  counts.predicates = points.counts().asked;
+  counts.exact_predicates = points.counts().exact;
+  return {output(points, mesh, facets, regions), counts};
+}
+
+} // namespace anistar::generate

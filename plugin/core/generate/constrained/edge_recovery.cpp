@@ -1,0 +1,119 @@
+#include "generate/constrained/edge_recovery.h"
+
+#include "base/errors.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace anistar::generate {
+namespace {
+
+Index popped(std::vector<Index> &stack) {
+  const Index last = stack.back();
+  stack.pop_back();
+  return last;
+}
+
+} // namespace
+
+EdgeRecovery::EdgeRecovery(ExactPoints &points, GhostMesh &mesh, FacetTriangles &facets,
+                           FacetFlips *flips)
+    : points_(points), mesh_(mesh), facets_(facets), flips_(flips),
+      rule_(points, mesh, facets), insertion_(points, mesh) {}
+
+EdgeRecovery::Counts EdgeRecovery::run(Monitor &monitor) {
+  push_missing_edges();
+  counts_.missing = segments_.size() + flat_.size();
+  while (!segments_.empty() || !flat_.empty() || !deferred_.empty()) {
+    monitor.insist(points_.size());
+    if (!segments_.empty()) {
+      const Index edge = popped(segments_);
+      if (is_missing(edge))
+        split(edge);
+    } else if (!flat_.empty()) {
+      const Index edge = popped(flat_);
+      if (is_missing(edge) && !flip(edge))
+        deferred_.push_back(edge);
+    } else {
+      const Index edge = popped(deferred_);
+      if (is_missing(edge) && !flip(edge))
+        split(edge);
+    }
+  }
+  return counts_;
+}
+
+/// The longest come last: they are divided first, and spare others.
+void EdgeRecovery::push_missing_edges() {
+  const auto &edges = facets_.edges();
+  std::vector<Index> order(edges.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](Index e) { return edges[e].from; });
+  PerVertex<Index> neighbour_of(points_.size(), none);
+  Index here = none;
+  for (const Index e : order) {
+    if (!edges[e].is_alive || !facets_.is_required(e))
+      continue;
+    if (edges[e].from != here) {
+      here = edges[e].from;
+      for (const Index c : mesh_.star(here))
+        for (const Index v : mesh_.cell(c))
+          if (v != ghost)
+            neighbour_of[v] = here;
+    }
+    if (neighbour_of[edges[e].to] != here)
+      push(e);
+  }
+  const auto length = [&](Index e) {
+    return points_.squared_distance(edges[e].from, edges[e].to);
+  };
+  std::ranges::stable_sort(segments_, {}, length);
+  std::ranges::stable_sort(flat_, {}, length);
+}
+
+bool EdgeRecovery::is_missing(Index edge) const {
+  const FacetTriangles::Edge &e = facets_.edges()[edge];
+  return e.is_alive && facets_.is_required(edge) && !mesh_.find_edge(e.from, e.to);
+}
+
+bool EdgeRecovery::flip(Index edge) {
+  if (!flips_ || !flips_->should_flip(edge))
+    return false;
+  for (const Index required : facets_.flip_required(edge, points_))
+    flat_.push_back(required);
+  flips_->count_flip();
+  return true;
+}
+
+void EdgeRecovery::split(Index edge) {
+  const LinePart part = rule_.part_of(edge);
+  const Line line = facets_.lines()[part.line];
+  const double t = rule_.fraction(part);
+  if (!(t > part.low && t < part.high))
+    throw MeshingError("the edge from point " + std::to_string(line.from) +
+                           " to point " + std::to_string(line.to) +
+                           " stays missing, however finely it is divided",
+                       points_.rounded(part.from));
+  counts_.on_flat_lines += line.is_flat();
+  const Index p = points_.add({line.from, line.to, t});
+  mesh_.add_vertex();
+  insertion_.insert(p, mesh_.cell_at(part.from));
+  for (const Index half : facets_.split(edge, p))
+    push(half);
+  push_lost_edges();
+}
+
+void EdgeRecovery::push_lost_edges() {
+  for (const Cell<3> &cell : insertion_.removed())
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        if (cell[i] == ghost || cell[j] == ghost)
+          continue;
+        const Index edge = facets_.find(cell[i], cell[j]);
+        if (edge != none && facets_.is_required(edge))
+          push(edge);
+      }
+}
+
+} // namespace anistar::generate

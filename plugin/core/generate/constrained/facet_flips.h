@@ -1,0 +1,34 @@
+#pragma once
+// The choice of the triangles that make up a nearly planar facet: those of the input
+// are often none that a Delaunay mesh has, and any others within its flatness will do.
+
+#include "generate/constrained/exact_points.h"
+#include "generate/constrained/facet_triangles.h"
+#include "generate/constrained/ghost_mesh.h"
+
+namespace anistar::generate {
+
+class FacetFlips {
+public:
+  FacetFlips(const ExactPoints &points, const GhostMesh &mesh, FacetTriangles &facets)
+      : points_(points), mesh_(mesh), facets_(facets) {}
+
+  /// Flips missing edges within facets to diagonals that the mesh has, or else towards
+  /// the Delaunay triangles of the facet. @pre no planes are known yet
+  void flip_missing_edges();
+  /// Whether a missing edge should be the other diagonal of its quadrilateral; asked
+  /// too often for the same one the answer is no.
+  [[nodiscard]] bool should_flip(Index edge);
+
+  [[nodiscard]] std::size_t n_flips() const { return n_flips_; }
+  void count_flip() { ++n_flips_; }
+
+private:
+  const ExactPoints &points_;
+  const GhostMesh &mesh_;
+  FacetTriangles &facets_;
+  EdgeTable tries_; ///< how often each diagonal was made
+  std::size_t n_flips_ = 0;
+};
+
+} // namespace anistar::generate
