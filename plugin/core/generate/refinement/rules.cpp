@@ -8,6 +8,8 @@ namespace {
 /// Where the centre itself has no cavity that its star fills, points near to it are tried.
 constexpr PickRule centre_first{.delta = .05, .n_picks = 6, .must_avoid_slivers = false};
 constexpr int most_tries_of_edge = 20;
+/// As a fraction of the points, inverted.
+constexpr std::size_t growth_before_retry = 50;
 
 double diagonal_of(const std::vector<Vector<3>> &points) {
   Vector<3> low = points.front(), high = low;
@@ -68,6 +70,7 @@ bool Rules::try_put_off_edges() {
   if (put_off_.empty() || insertions_->edges == edges_at_last_try_)
     return false;
   edges_at_last_try_ = insertions_->edges;
+  blocked_at_.clear();
   for (const WaitingEdge &waiting : put_off_)
     queues_.edges.push(waiting);
   put_off_.clear();
@@ -125,6 +128,8 @@ Outcome Rules::refine_edge(const Segment &edge, const Cause &cause) {
   }
   if (r_e < floor_)
     return refuse(Refusal::too_short);
+  if (is_blocked(e))
+    return refuse(Refusal::no_cavity);
   const double middle = clusters_.split_fraction(mesh_, segment, e[0], e[1]);
   const bool is_at_cluster = middle != .5;
   Picks picks(pick_rule_, settings_.seed, n_regions_++);
@@ -137,7 +142,16 @@ Outcome Rules::refine_edge(const Segment &edge, const Cause &cause) {
     if (is_at_cluster)
       break;
   }
+  if (!best.site)
+    blocked_at_[e] = mesh_.points.size();
   return insert_best(best, cause, Refusal::no_cavity);
+}
+
+/// An edge that had no cavity has none before enough has changed.
+bool Rules::is_blocked(const Segment &e) const {
+  const auto found = blocked_at_.find(e);
+  return found != blocked_at_.end() &&
+         mesh_.points.size() < found->second + found->second / growth_before_retry;
 }
 
 /// conditionally-refine-facet(f): c = circumcenter(f); if c encroaches a constrained edge

@@ -12,6 +12,7 @@
 #include "generate/refinement/size_field.h"
 #include "generate/refinement/spheres.h"
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -88,6 +89,7 @@ private:
   std::int32_t n_regions_ = 0; ///< refinement regions so far
   std::vector<WaitingEdge> put_off_;
   std::size_t edges_at_last_try_ = 0;
+  std::map<Segment, std::size_t> blocked_at_; ///< number of points at the failure
   std::vector<Segment> edges_;
   std::vector<Index> fan_;
 
@@ -110,6 +112,7 @@ private:
     return Outcome::refused;
   }
   bool try_put_off_edges();
+  [[nodiscard]] bool is_blocked(const Segment &e) const;
   [[nodiscard]] bool takes(const Site &site, double r_tau, BestPick &best);
   Outcome insert(const Site &site);
   Outcome insert_best(const BestPick &best, const Cause &cause, Refusal otherwise);
