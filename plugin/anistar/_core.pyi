@@ -601,3 +601,102 @@ def constrained_tetrahedra(
     """
 def first_at_place(points: NDArray[numpy.float64]) -> NDArray[numpy.int32]:
     """Of each point the first one that is exactly where it is."""
+
+class SliverSettings:
+    """What Li's elimination of slivers may choose."""
+
+    def __init__(self) -> None: ...
+
+    @property
+    def are_eliminated(self) -> bool: ...
+
+    @are_eliminated.setter
+    def are_eliminated(self, arg: bool, /) -> None: ...
+
+    @property
+    def least_dihedral(self) -> float: ...
+
+    @least_dihedral.setter
+    def least_dihedral(self, arg: float, /) -> None: ...
+
+    @property
+    def delta(self) -> float: ...
+
+    @delta.setter
+    def delta(self, arg: float, /) -> None: ...
+
+    @property
+    def rho_0(self) -> float: ...
+
+    @rho_0.setter
+    def rho_0(self, arg: float, /) -> None: ...
+
+    @property
+    def C(self) -> float: ...
+
+    @C.setter
+    def C(self, arg: float, /) -> None: ...
+
+    @property
+    def n_picks(self) -> int: ...
+
+    @n_picks.setter
+    def n_picks(self, arg: int, /) -> None: ...
+
+    def meet_conditions(self) -> bool: ...
+
+class RefinementSettings:
+    """What Delaunay refinement is told."""
+
+    def __init__(self) -> None: ...
+
+    @property
+    def bound(self) -> float: ...
+
+    @bound.setter
+    def bound(self, arg: float, /) -> None: ...
+
+    @property
+    def shortest_edge(self) -> float: ...
+
+    @shortest_edge.setter
+    def shortest_edge(self, arg: float, /) -> None: ...
+
+    @property
+    def slivers(self) -> SliverSettings: ...
+
+    @slivers.setter
+    def slivers(self, arg: SliverSettings, /) -> None: ...
+
+    @property
+    def max_vertices(self) -> int: ...
+
+    @max_vertices.setter
+    def max_vertices(self, arg: int, /) -> None: ...
+
+    @property
+    def max_seconds(self) -> float: ...
+
+    @max_seconds.setter
+    def max_seconds(self, arg: float, /) -> None: ...
+
+    @property
+    def seed(self) -> int: ...
+
+    @seed.setter
+    def seed(self, arg: int, /) -> None: ...
+
+def refined_tetrahedra(
+    *,
+    points: NDArray[numpy.float64],
+    cells: NDArray[numpy.int32],
+    cell_regions: NDArray[numpy.int32],
+    walls: NDArray[numpy.int32],
+    wall_facets: NDArray[numpy.int32],
+    edges: NDArray[numpy.int32],
+    edge_segments: NDArray[numpy.int32],
+    sizes: NDArray[numpy.float64],
+    settings: RefinementSettings,
+    callback: object | None,
+) -> dict[str, Any]:
+    """Tetrahedra after Delaunay refinement, and what the rules did, by name."""
