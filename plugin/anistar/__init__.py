@@ -7,6 +7,18 @@ from . import metric
 from .base.errors import FormatError, MeshingError
 from .base.progress import progress
 from .formats import read, write
+from .generating import (
+    PLC,
+    Generated,
+    GenerateOptions,
+    PLCError,
+    PLCProblem,
+    Region,
+    check_plc,
+    generate,
+    read_plc,
+    write_plc,
+)
 from .judging.certificate import Certificate, certify
 from .judging.explanation import FacetOfStar, SimplexOfStar, explain_star, explain_surface_star
 from .loops.adapt import Adapted, adapt
@@ -38,6 +50,7 @@ from .transfer import (
 __version__ = "0.1.0"
 
 __all__ = [
+    "PLC",
     "AdaptOptions",
     "Adapted",
     "Certificate",
@@ -45,6 +58,8 @@ __all__ = [
     "FacetOfStar",
     "Field",
     "FormatError",
+    "GenerateOptions",
+    "Generated",
     "KeepOptions",
     "Loop",
     "LoopError",
@@ -53,6 +68,9 @@ __all__ = [
     "MeshingError",
     "MetricError",
     "MetricOptions",
+    "PLCError",
+    "PLCProblem",
+    "Region",
     "RemeshOptions",
     "Remeshed",
     "Settled",
@@ -67,13 +85,16 @@ __all__ = [
     "adapt",
     "adapt_loop",
     "certify",
+    "check_plc",
     "convergence_study",
     "explain_star",
     "explain_surface_star",
+    "generate",
     "metric",
     "needs_adaptation",
     "progress",
     "read",
+    "read_plc",
     "remesh",
     "transfer",
     "transfer_operator",
@@ -81,6 +102,7 @@ __all__ = [
     "unsteady_loop",
     "validate",
     "write",
+    "write_plc",
 ]
 
 follow_imports()

@@ -17,7 +17,7 @@ from ..meshes.topology import cell_volumes
 from .plc import PLC
 
 PlaneSizes = float | ArrayLike | Callable[[Floats], ArrayLike]
-"""One length of edges, one at each point of the complex, or ``size(points)``."""
+"""One length of edges, one at each point of the mesh, or ``size(points)``."""
 
 BOUND = 1.15
 """Circumradius over shortest edge: no angle below 25.8 degrees, and still known to end."""
@@ -208,7 +208,7 @@ def refined_plane(
         raise ValueError(f"bound must be finite and above {SMALLEST_BOUND:.3g}, got {bound}")
     budget = budget or PlaneBudget()
     if not callable(sizes):
-        return _refined(plc, made, _at_points(sizes, plc, made), bound, budget)
+        return _refined(plc, made, _at_points(sizes, made), bound, budget)
     for _ in range(MOST_ROUNDS):
         before = len(made.points)
         made = _refined(plc, made, _evaluated(sizes, made.points), bound, budget)
@@ -259,14 +259,12 @@ def _most_vertices(made: PlanePieces, sizes: Floats, wished: dict[int, float]) -
     return int(min(max(FREE_VERTICES, EXCESS * (predicted + len(made.points))), 2**31 - 1))
 
 
-def _at_points(sizes: float | ArrayLike | None, plc: PLC, made: PlanePieces) -> Floats:
+def _at_points(sizes: float | ArrayLike | None, made: PlanePieces) -> Floats:
     values = np.asarray(math.inf if sizes is None else sizes, dtype=np.float64)
     if values.ndim == 0:
         values = np.full(len(made.points), float(values))
-    elif values.shape != (plc.n_points,):
-        raise ValueError(f"sizes must have shape ({plc.n_points},), not {values.shape}")
-    elif len(made.points) != plc.n_points:
-        raise ValueError("sizes at the points of the complex need the mesh before refinement")
+    elif values.shape != (len(made.points),):
+        raise ValueError(f"sizes must have shape ({len(made.points)},), not {values.shape}")
     return _checked(values)
 
 

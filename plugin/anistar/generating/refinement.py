@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -151,6 +151,8 @@ class RefinedTetrahedra:
         and why; ``above_bound``, ``slivers``: tetrahedra left; ``largest_ratio``,
         ``least_dihedral`` (degrees); ``l_1``, ``l_2``: shortest edge before the elimination of
         slivers, and the floor of that; seconds.
+    steiner_ends, steiner_shares : arrays
+        Empty: nothing is interpolated from the complex any more.
     """
 
     points: Floats
@@ -162,6 +164,8 @@ class RefinedTetrahedra:
     edge_segments: Ints
     stop_reason: str
     record: dict[str, Any]
+    steiner_ends: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
+    steiner_shares: Floats = field(default_factory=lambda: np.zeros(0))
 
 
 def refined_tetrahedra(

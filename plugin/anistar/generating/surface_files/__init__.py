@@ -31,7 +31,7 @@ from .of_objects import surface_of_meshio
 from .raw_surface import RawSurface
 from .writing import write_plc
 
-__all__ = ["SurfaceReport", "read_plc", "read_plc_with_report", "write_plc"]
+__all__ = ["SurfaceReport", "holds_geometry", "read_plc", "read_plc_with_report", "write_plc"]
 
 _log = logging.getLogger(__name__)
 
@@ -114,3 +114,20 @@ def _read(path: Path, planar: Planar) -> tuple[PLC, SurfaceReport]:
     raise FormatError(
         f"cannot read {path}: files {path.suffix or 'without suffix'} are not known as geometry"
     )
+
+
+def holds_geometry(path: Path) -> bool:
+    """Return whether a file holds the geometry of a domain and no mesh of one.
+
+    Raises
+    ------
+    FormatError
+        If that takes a look into the file, and it is unreadable.
+    """
+    suffix = suffix_of(path)
+    if suffix in of_meshes.READERS and path.is_file():
+        if suffix == ".vtk" and legacy_polydata.holds_polydata(path):
+            return True
+        with reading(path):
+            return not of_meshes.is_mesh(of_meshes.read(path))
+    return suffix in (*_SURFACES, *_COMPLEXES)
