@@ -19,7 +19,7 @@ import anistar
 from anistar.generating import PLC, Region
 from anistar.generating.first_mesh import FirstMesh
 from anistar.generating.plane import PlaneBudget, constrained_plane, refined_plane
-from anistar.generating.shapes import least_angles
+from anistar.generating.report.shapes import least_angles
 
 few = settings(max_examples=25, deadline=None, derandomize=True)
 
