@@ -86,7 +86,7 @@ def read(path: Path) -> RawSurface:
         If something is no number or refers to no point; names the line.
     """
     with reading(path):
-        lines = Lines(path.read_bytes().replace(b"\\\r\n", b" ").replace(b"\\\n", b" "))
+        lines = Lines(path.read_bytes(), continuation="\\")
         content = _Content(lines)
         for words in lines:
             content.read(words)
