@@ -15,11 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.arrays import AnyArray
-from ...formats.parsing.cursor import Cursor
-from ...formats.parsing.reading import reading
-from .lines import Lines
-from .raw_surface import Faces, RawSurface
+from ....base.arrays import AnyArray
+from ....formats.parsing.cursor import Cursor
+from ....formats.parsing.reading import reading
+from ..content.lines import Lines
+from ..content.raw_surface import Faces, RawSurface
 
 _HEADER = re.compile(rb"\s*(ST)?(C)?(N)?(4)?(n)?OFF\b[^\S\n]*(BINARY)?")
 _N_COUNTS = 3
