@@ -93,7 +93,7 @@ def test_what_is_no_planar_polygon_is_named(facet, message):
 
 
 def test_two_points_of_a_facet_at_one_place_are_named():
-    with pytest.raises(ValueError, match="its points 0 and 8 are at one place|8 and 0"):
+    with pytest.raises(ValueError, match=r"its points . and . are at one place"):
         PLC([*CORNERS, [0, 0, 0]], facets=[[0, 1, 2, 3, 8]])
 
 

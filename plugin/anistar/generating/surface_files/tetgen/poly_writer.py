@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...base.arrays import Floats
-from ...formats.parsing.text_rows import printed
-from ..facet_loops import Loop, Loops
-from ..plc import PLC
+from ....base.arrays import Floats
+from ....formats.parsing.text_rows import printed
+from ...facet_loops import Loop, Loops
+from ...plc import PLC
 
 
 def written_poly(plc: PLC, *, is_short: bool) -> str:
@@ -63,7 +63,7 @@ def _polygon(loop: Loop) -> str:
 def _inside(points: Floats, loop: Loop) -> Floats:
     """Return a place inside a loop: in the middle of its largest triangle."""
     corners = points[list(loop)]
-    hole = PLC(corners, facets=[range(len(loop))])
+    hole = PLC(corners, facets=[(tuple(range(len(loop))),)], flatness=1.0)  # as its facet is
     triangles = hole.points[hole.triangles]
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     largest = int(np.argmax((normals * normals).sum(axis=1)))
