@@ -17,6 +17,7 @@ NB_MODULE(_core, module) {
   bind_nearest(module);
   bind_constrained(module);
   bind_check_plc(module);
+  bind_repair(module);
   bind_supermesh(module);
   bind_symmetric_system(module);
   bind_remesh_settings(module); // and what is told in their terms
