@@ -700,3 +700,43 @@ def refined_tetrahedra(
     callback: object | None,
 ) -> dict[str, Any]:
     """Tetrahedra after Delaunay refinement, and what the rules did, by name."""
+class Inside(enum.Enum):
+    parity = 0
+
+    winding = 1
+
+    nonzero = 2
+
+def constrained_triangles(
+    *,
+    points: NDArray[numpy.float64],
+    segments: NDArray[numpy.int32],
+    turns: NDArray[numpy.int32],
+    points_kept: NDArray[numpy.int32],
+    seeds: NDArray[numpy.float64],
+    seed_tags: NDArray[numpy.int32],
+    holes: NDArray[numpy.float64],
+    inside: Inside,
+    max_seconds: float,
+    callback: object | None,
+) -> MeshArrays:
+    """
+    The constrained Delaunay mesh of what segments enclose. All points are there; the tags of facets are their segments.
+    """
+
+def refined_triangles(
+    mesh: MeshArrays,
+    *,
+    given_points: NDArray[numpy.float64],
+    segments: NDArray[numpy.int32],
+    bound: float,
+    sizes: NDArray[numpy.float64],
+    region_tags: NDArray[numpy.int32],
+    region_sizes: NDArray[numpy.float64],
+    max_vertices: int,
+    max_seconds: float,
+    callback: object | None,
+) -> tuple[MeshArrays, dict[str, int], StopReason]:
+    """
+    A constrained mesh after Delaunay refinement, what was counted, and what ended it.
+    """

@@ -18,8 +18,9 @@ from plane_complexes import (
 import anistar
 from anistar.generating import PLC, Region
 from anistar.generating.first_mesh import FirstMesh
-from anistar.generating.plane import PlaneBudget, constrained_plane, refined_plane
+from anistar.generating.plane import PlaneBudget, constrained_plane, plane_sizes, refined_plane
 from anistar.generating.report.shapes import least_angles
+from anistar.metric import from_sizes, graded
 
 few = settings(max_examples=25, deadline=None, derandomize=True)
 
@@ -129,6 +130,32 @@ def test_sizes_are_taken_at_points_by_regions_and_from_functions():
     in_middle = np.count_nonzero(np.abs(function.points[:, 0] - 0.5) < 0.1)
     assert in_middle > 0.4 * len(function.points)
     assert function.stop_reason == "finished"
+
+
+def test_sizes_follow_gaps_and_remeshing_keeps_tags_slits_and_points():
+    gap = 0.02
+    points = np.r_[SQUARE, [[0.4, gap], [0.6, gap], [0.5, 0.7]]]
+    plc = PLC(
+        points,
+        edges=[*loop(0, 4), [4, 5]],
+        edge_tags=[1, 2, 3, 4, 5],
+        points_kept=[6],
+        names={(1, 5): "plate"},
+    )
+    made = constrained_plane(plc)
+    fine, sizes = plane_sizes(plc, made)
+    in_gap = (np.abs(fine.points[:, 0] - 0.5) < 0.1) & (fine.points[:, 1] <= gap)
+    far = fine.points[:, 1] > 0.9
+    assert 0.5 * gap < sizes[in_gap].mean() < 2.0 * gap
+    assert sizes[far].min() > 0.2
+    first, background = FirstMesh.of(plc, made), FirstMesh.of(plc, fine)
+    M = from_sizes(sizes[background.origin], 2)
+    M = graded(background.mesh, M, factor=1.5)
+    done = anistar.remesh(background.mesh, M, geometry=first.mesh, shape="polyhedron")
+    mesh = first.tagged(done.mesh)
+    assert anistar.validate(mesh, first.tagged()) == []
+    assert len(mesh.corners) == 7
+    assert least_angles(mesh).min() > 25.0
 
 
 @pytest.mark.parametrize("degrees", [59.0, 30.0, 14.0, 5.0, 1.0, 1e-2, 1e-6])

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..base.arrays import Floats, Ints
 from ..base.core_errors import meshing_errors
-from ..meshes.topology import cell_volumes
+from ..meshes.topology import cell_volumes, edge_lengths
 from .plc import PLC
 
 PlaneSizes = float | ArrayLike | Callable[[Floats], ArrayLike]
@@ -215,6 +215,31 @@ def refined_plane(
         if len(made.points) == before or made.stop_reason != "finished":
             break
     return made
+
+
+def plane_sizes(
+    plc: PLC, made: PlanePieces, budget: PlaneBudget | None = None
+) -> tuple[PlanePieces, Floats]:
+    """Return triangles, and sizes at their points that follow the outline.
+
+    Delaunay refinement without a size makes edges as long as segments are and as gaps between
+    segments are wide, up to a factor that its bound gives, and longer away from there (Ruppert's
+    local feature size).
+
+    Returns
+    -------
+    fine : PlanePieces
+    sizes : (n,) float64
+        The mean length of the edges at each point; infinite at points of no triangle.
+    """
+    fine = refined_plane(plc, made, budget=budget)
+    edges = np.sort(fine.cells[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges = np.unique(edges, axis=0)
+    lengths = np.repeat(edge_lengths(fine.points, edges), 2)
+    n = len(fine.points)
+    total = np.bincount(edges.ravel(), weights=lengths, minlength=n)
+    count = np.bincount(edges.ravel(), minlength=n)
+    return fine, np.where(count > 0, total / np.maximum(count, 1), np.inf)
 
 
 def _refined(
