@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -43,12 +44,13 @@ def stitched(soup: Soup, tolerance: float) -> Stitched:
     n_merged = n_points - len(soup.points)
     n_dropped = n_triangles - len(soup.triangles)
     n_split = rounds = 0
-    for rounds in range(1, MOST_ROUNDS + 1):
+    is_split = True
+    while is_split and rounds < MOST_ROUNDS:
         n_before = len(soup.triangles)
         soup = _with_split_borders(soup, tolerance)
-        if len(soup.triangles) == n_before:
-            break
+        is_split = len(soup.triangles) > n_before
         n_split += len(soup.triangles) - n_before
+        rounds += 1
     return Stitched(soup, n_merged, n_dropped, n_split, rounds)
 
 
@@ -100,7 +102,7 @@ def _with_split_borders(soup: Soup, tolerance: float) -> Soup:
         if between:
             apex = int(soup.triangles[triangle, (k + 2) % 3])
             chain = [int(a), *between, int(b)]
-            parts += [(p, q, apex) for p, q in zip(chain[:-1], chain[1:], strict=True)]
+            parts += [(p, q, apex) for p, q in pairwise(chain)]
             sources += [int(triangle)] * (len(chain) - 1)
             split[triangle] = True
     if not parts:
