@@ -187,7 +187,7 @@ def refined_plane(
         Wanted lengths of edges; infinite ones ask for nothing.
     bound : float
         Of circumradius over shortest edge. It is known to end for 1.123 and more (26.4 degrees),
-        and mostly does down to 0.9 (33.7).
+        and mostly does down to 0.95 (31.8).
     budget : PlaneBudget, optional
 
     Returns
