@@ -41,7 +41,6 @@ SplitRule::SplitRule(const ExactPoints &points, const GhostMesh &mesh,
       const Vector<3> along = points.rounded(line.to) - points.rounded(line.from);
       directions[line.from].push_back(along);
       directions[line.to].push_back(-along);
-      segments_.put(line.from, line.to, 0);
     }
   for (std::size_t v = 0; v < directions.size(); ++v)
     is_acute_[v] = are_acute(directions[v]);
@@ -91,12 +90,10 @@ void SplitRule::refuse_point_between(const LinePart &part, Index v) const {
                        points_.rounded(v));
 }
 
-/// Whether a point lies on a line from this end, where lines meet at acute angles.
+/// Whether a point was put on a line from this end, where lines meet at acute angles.
 bool SplitRule::share_acute_end(Index end, Index reference) const {
-  if (!is_acute(end))
+  if (!is_acute(end) || reference < points_.n_given())
     return false;
-  if (reference < points_.n_given())
-    return segments_.find(end, reference) != none;
   const SteinerPoint &point = points_.steiner(reference);
   return point.a == end || point.b == end;
 }

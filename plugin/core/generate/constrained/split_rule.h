@@ -2,12 +2,12 @@
 // Where a missing edge is divided.
 //
 // At the foot of what is in its way, which puts the new point as near to that as can
-// be. Where this lies on another line from the same acute vertex, both would be divided
-// in turns for ever: there the point is put on a sphere about that vertex, so that the
-// parts of all its lines become equally long (Si, Adaptive tetrahedral mesh generation
-// by constrained Delaunay refinement, 2008, section 4, which puts points on spheres
-// about the ends of lines in the first case as well; feet spare up to half of the
-// points).
+// be. Where this was put on another line from the same acute vertex, both would be
+// divided in turns for ever: there the point is put on a sphere about that vertex, so
+// that the parts of all its lines become equally long (Si, Adaptive tetrahedral mesh
+// generation by constrained Delaunay refinement, 2008, section 4, which puts points on
+// spheres about the ends of lines in the first case as well; feet spare up to half of
+// the points).
 
 #include "generate/constrained/exact_points.h"
 #include "generate/constrained/facet_triangles.h"
@@ -35,7 +35,6 @@ private:
   const GhostMesh &mesh_;
   const FacetTriangles &facets_;
   PerVertex<bool> is_acute_;
-  EdgeTable segments_; ///< the lines that are not flat, by their ends
 
   [[nodiscard]] bool is_acute(Index v) const;
   [[nodiscard]] Index reference_point(const LinePart &part) const;
