@@ -244,7 +244,9 @@ def test_damaged_ply_files_are_refused(tmp_path, form):
     cases = [whole[:-10], whole[:60], whole.replace(b"face 6", b"face 600000000")]
     cases += [whole.replace(b"float x", b"float u"), whole.replace(b"list uchar", b"list float")]
     for content in cases:
-        with pytest.raises(FormatError, match=r"truncated|property|no integer|not known in a header"):
+        with pytest.raises(
+            FormatError, match=r"truncated|property|no integer|not known in a header"
+        ):
             read_plc(written(tmp_path, "a.ply", content))
 
 

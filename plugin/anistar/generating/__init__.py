@@ -6,6 +6,7 @@ from .given import as_plc
 from .options import GenerateOptions
 from .plc import PLC
 from .region import Region
+from .repairing import RepairReport, Wrapped, repaired, wrap
 from .result import Generated
 from .surface_files import SurfaceReport, read_plc, read_plc_with_report, write_plc
 
@@ -16,11 +17,15 @@ __all__ = [
     "PLCError",
     "PLCProblem",
     "Region",
+    "RepairReport",
     "SurfaceReport",
+    "Wrapped",
     "as_plc",
     "check_plc",
     "generate",
     "read_plc",
     "read_plc_with_report",
+    "repaired",
+    "wrap",
     "write_plc",
 ]

@@ -19,6 +19,7 @@ from .methods.stages import Clock, Stage
 from .options import GenerateOptions
 from .plane import PlaneBudget, PlanePieces, constrained_plane
 from .plc import PLC
+from .repairing import repaired
 from .report import GenerateReport
 from .report.measures import FacetMeasures
 from .report.shapes import CellShapes
@@ -94,6 +95,7 @@ def _generated(
         with clock.timed("reading"):
             plc, remarks = _opened(geometry)
         with clock.timed("checking"):
+            plc, repair = repaired(plc, options.repair)
             require_valid(plc)
         with clock.timed("constrained"):
             pieces = _constrained(plc, options, clock)
@@ -108,7 +110,7 @@ def _generated(
         n_cells=made.mesh.n_cells,
         shapes=CellShapes.of(made.mesh),
         measures=FacetMeasures.of(first, made),
-        repair={},
+        repair=repair.as_dict(),
         constrained=pieces.counts,
         refinement=made.refinement,
         remeshing=made.remeshing,
