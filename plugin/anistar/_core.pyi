@@ -688,3 +688,141 @@ def wrap_triangles(
     offset: float,
 ) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.int32]]:
     """A closed surface around triangles."""
+class SliverSettings:
+    """What Li's elimination of slivers may choose."""
+
+    def __init__(self) -> None: ...
+
+    @property
+    def are_eliminated(self) -> bool: ...
+
+    @are_eliminated.setter
+    def are_eliminated(self, arg: bool, /) -> None: ...
+
+    @property
+    def least_dihedral(self) -> float: ...
+
+    @least_dihedral.setter
+    def least_dihedral(self, arg: float, /) -> None: ...
+
+    @property
+    def delta(self) -> float: ...
+
+    @delta.setter
+    def delta(self, arg: float, /) -> None: ...
+
+    @property
+    def rho_0(self) -> float: ...
+
+    @rho_0.setter
+    def rho_0(self, arg: float, /) -> None: ...
+
+    @property
+    def C(self) -> float: ...
+
+    @C.setter
+    def C(self, arg: float, /) -> None: ...
+
+    @property
+    def n_picks(self) -> int: ...
+
+    @n_picks.setter
+    def n_picks(self, arg: int, /) -> None: ...
+
+    def meet_conditions(self) -> bool: ...
+
+class RefinementSettings:
+    """What Delaunay refinement is told."""
+
+    def __init__(self) -> None: ...
+
+    @property
+    def bound(self) -> float: ...
+
+    @bound.setter
+    def bound(self, arg: float, /) -> None: ...
+
+    @property
+    def shortest_edge(self) -> float: ...
+
+    @shortest_edge.setter
+    def shortest_edge(self, arg: float, /) -> None: ...
+
+    @property
+    def slivers(self) -> SliverSettings: ...
+
+    @slivers.setter
+    def slivers(self, arg: SliverSettings, /) -> None: ...
+
+    @property
+    def max_vertices(self) -> int: ...
+
+    @max_vertices.setter
+    def max_vertices(self, arg: int, /) -> None: ...
+
+    @property
+    def max_seconds(self) -> float: ...
+
+    @max_seconds.setter
+    def max_seconds(self, arg: float, /) -> None: ...
+
+    @property
+    def seed(self) -> int: ...
+
+    @seed.setter
+    def seed(self, arg: int, /) -> None: ...
+
+def refined_tetrahedra(
+    *,
+    points: NDArray[numpy.float64],
+    cells: NDArray[numpy.int32],
+    cell_regions: NDArray[numpy.int32],
+    walls: NDArray[numpy.int32],
+    wall_facets: NDArray[numpy.int32],
+    edges: NDArray[numpy.int32],
+    edge_segments: NDArray[numpy.int32],
+    sizes: NDArray[numpy.float64],
+    settings: RefinementSettings,
+    callback: object | None,
+) -> dict[str, Any]:
+    """Tetrahedra after Delaunay refinement, and what the rules did, by name."""
+class Inside(enum.Enum):
+    parity = 0
+
+    winding = 1
+
+    nonzero = 2
+
+def constrained_triangles(
+    *,
+    points: NDArray[numpy.float64],
+    segments: NDArray[numpy.int32],
+    turns: NDArray[numpy.int32],
+    points_kept: NDArray[numpy.int32],
+    seeds: NDArray[numpy.float64],
+    seed_tags: NDArray[numpy.int32],
+    holes: NDArray[numpy.float64],
+    inside: Inside,
+    max_seconds: float,
+    callback: object | None,
+) -> MeshArrays:
+    """
+    The constrained Delaunay mesh of what segments enclose. All points are there; the tags of facets are their segments.
+    """
+
+def refined_triangles(
+    mesh: MeshArrays,
+    *,
+    given_points: NDArray[numpy.float64],
+    segments: NDArray[numpy.int32],
+    bound: float,
+    sizes: NDArray[numpy.float64],
+    region_tags: NDArray[numpy.int32],
+    region_sizes: NDArray[numpy.float64],
+    max_vertices: int,
+    max_seconds: float,
+    callback: object | None,
+) -> tuple[MeshArrays, dict[str, int], StopReason]:
+    """
+    A constrained mesh after Delaunay refinement, what was counted, and what ended it.
+    """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 from ..base.progress import task
@@ -9,23 +10,26 @@ from ..base.settings import chosen
 from ..base.telling import tell
 from ..objects import AnyMesh
 from .checking import require_valid
+from .constrained import Constrained, constrained
 from .first_mesh import FirstMesh
-from .geometries import AnyGeometry, opened_geometry
-from .methods.constrained import constrained
+from .given import as_plc
 from .methods.refined import refined
 from .methods.remeshed import remeshed
 from .methods.stages import Clock, Stage
 from .options import GenerateOptions
+from .plane import PlaneBudget, PlanePieces, constrained_plane
+from .plc import PLC
 from .repairing import repaired
 from .report import GenerateReport
 from .report.measures import FacetMeasures
 from .report.shapes import CellShapes
 from .result import Generated
 from .sizes.wanted import Sizes, wish_for
+from .surface_files import read_plc_with_report
 
 
 def generate(
-    geometry: AnyGeometry,
+    geometry: Any,
     size: Sizes | None = None,
     metric: Sizes | None = None,
     options: GenerateOptions | None = None,
@@ -84,14 +88,14 @@ def generate(
 
 
 def _generated(
-    geometry: AnyGeometry, size: Sizes | None, metric: Sizes | None, options: GenerateOptions
+    geometry: Any, size: Sizes | None, metric: Sizes | None, options: GenerateOptions
 ) -> Generated:
     clock = Clock(options.max_seconds)
     with task("generate"):
         with clock.timed("reading"):
-            opened = opened_geometry(geometry)
+            plc, remarks = _opened(geometry)
         with clock.timed("checking"):
-            plc, repair = repaired(opened.plc, options.repair)
+            plc, repair = repaired(plc, options.repair)
             require_valid(plc)
         with clock.timed("constrained"):
             pieces = _constrained(plc, options, clock)
@@ -112,10 +116,18 @@ def _generated(
         remeshing=made.remeshing,
         warnings=(*pieces.warnings, *made.warnings),
         seconds=clock.seconds,
-        reading=opened.remarks,
+        reading=remarks,
     )
     tell(report.warnings)
     return Generated(made.mesh, report)
+
+
+def _opened(geometry: Any) -> tuple[PLC, tuple[str, ...]]:
+    """Return the complex that is given, and what was changed to read it."""
+    if isinstance(geometry, str | os.PathLike):
+        plc, report = read_plc_with_report(geometry)
+        return plc, report.warnings
+    return as_plc(geometry), ()
 
 
 def _constrained(plc: PLC, options: GenerateOptions, clock: Clock) -> Constrained | PlanePieces:
@@ -137,8 +149,10 @@ def _finished(
         if size is not None or metric is not None:
             raise ValueError('method="constrained" adds no points for a size or a metric')
         return Stage(mesh=first.tagged(), numbered=first.mesh)
+    if options.method == "refine" and metric is not None:
+        raise ValueError('method="refine" makes isotropic meshes: give the metric to "remesh"')
+    wish = wish_for(first, size, metric, options)
     if options.method == "refine":
-        if metric is not None:
-            raise ValueError('method="refine" makes isotropic meshes: give the metric to "remesh"')
-        return refined(first, size, options, clock)
-    return remeshed(first, wish_for(first, size, metric, options), options, clock)
+        return refined(first, wish, options, clock)
+    assert wish is not None  # remeshing follows widths at least
+    return remeshed(first, wish, options, clock)

@@ -6,17 +6,16 @@ import os
 from typing import Any
 
 from ..objects import as_mesh
-from .of_mesh import plc_of_mesh
 from .planar_facets import FLAT_ANGLE, FLATNESS
 from .plc import PLC
 from .surface_files import read_plc
-from .surface_files.assembly import Planar, assembled
-from .surface_files.of_objects import (
+from .surface_files.content.assembly import Planar, assembled
+from .surface_files.content.raw_surface import RawSurface
+from .surface_files.others.of_objects import (
     surface_of_arrays,
     surface_of_meshio,
     surface_of_polydata,
 )
-from .surface_files.raw_surface import RawSurface
 
 
 def as_plc(geometry: Any, *, flat_angle: float = FLAT_ANGLE, flatness: float = FLATNESS) -> PLC:
@@ -44,7 +43,8 @@ def as_plc(geometry: Any, *, flat_angle: float = FLAT_ANGLE, flatness: float = F
     surface = _surface(geometry)
     if surface is not None:
         return assembled(surface, Planar(flat_angle=flat_angle, flatness=flatness))[0]
-    return plc_of_mesh(as_mesh(geometry, "geometry"), flat_angle=flat_angle, flatness=flatness)
+    mesh = as_mesh(geometry, "geometry")
+    return PLC.from_mesh(mesh, flat_angle=flat_angle, flatness=flatness)
 
 
 def _surface(obj: Any) -> RawSurface | None:

@@ -1,53 +1,54 @@
-"""The complex that a mesh fills: its facets, ridges and corners, and a seed in each region."""
+"""What of a mesh makes a complex: its facets, ridges and corners, and a seed in each region."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..base.arrays import AnyArray, Ints
+from ..base.arrays import AnyArray, Floats, Ints
 from ..meshes.mesh import Mesh
 from ..meshes.topology import cell_volumes, facet_table
-from .planar_facets import FLAT_ANGLE, FLATNESS
-from .plc import PLC
 from .region import Region
 
 
-def plc_of_mesh(mesh: Mesh, *, flat_angle: float = FLAT_ANGLE, flatness: float = FLATNESS) -> PLC:
-    """Return the complex whose facets are those of a mesh, with tags and names.
+@dataclass(frozen=True, eq=False)
+class MeshBorder:
+    """What of a mesh makes a complex.
 
-    Each part of a region, as its facets bound it, has a seed in the middle of its largest cell.
-
-    Parameters
+    Attributes
     ----------
-    mesh : Mesh
-    flat_angle, flatness : float
-        What of its facets is one planar facet, see `PLC.from_surface`.
+    points : (n, d) float64
+        Those of facets, ridges and corners.
+    facets : (k, d) int array
+    facet_tags : (k,) int32
+    others : dict of str to object
+        Of a `PLC`: in 3D the ridges, and the corners, names and regions.
     """
-    ridges = (mesh.facets, mesh.facet_tags) if mesh.dim == 2 else (mesh.edges, mesh.edge_tags)
-    edges, edge_tags = ridges
-    used = np.zeros(mesh.n_points, bool)
-    for indices in (mesh.facets, edges, mesh.corners):
-        used[indices] = True
-    number = np.cumsum(used) - 1
-    others = {
-        "edges": number[edges],
-        "edge_tags": edge_tags,
-        "points_kept": number[mesh.corners],
-        "names": mesh.names,
-        "regions": _regions(mesh),
-    }
-    if mesh.dim == 2:
-        return PLC(mesh.points[used], **others)
-    return PLC.from_surface(
-        mesh.points[used],
-        number[mesh.facets],
-        mesh.facet_tags,
-        flat_angle=flat_angle,
-        flatness=flatness,
-        **others,
-    )
+
+    points: Floats
+    facets: AnyArray
+    facet_tags: Ints
+    others: dict[str, Any]
+
+    @classmethod
+    def of(cls, mesh: Mesh) -> MeshBorder:
+        """Return the border of a mesh, with a seed in the largest cell of each part of a region."""
+        used = np.zeros(mesh.n_points, bool)
+        for indices in (mesh.facets, mesh.edges, mesh.corners):
+            used[indices] = True
+        number = np.cumsum(used) - 1
+        others: dict[str, Any] = {
+            "points_kept": number[mesh.corners],
+            "names": mesh.names,
+            "regions": _regions(mesh),
+        }
+        if mesh.dim == 3:
+            others |= {"edges": number[mesh.edges], "edge_tags": mesh.edge_tags}
+        return cls(mesh.points[used], number[mesh.facets], mesh.facet_tags, others)
 
 
 def _regions(mesh: Mesh) -> tuple[Region, ...]:

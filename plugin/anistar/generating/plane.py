@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..base.arrays import Floats, Ints
 from ..base.core_errors import meshing_errors
-from ..meshes.topology import cell_volumes
+from ..meshes.topology import cell_volumes, edge_lengths
 from .plc import PLC
 
 PlaneSizes = float | ArrayLike | Callable[[Floats], ArrayLike]
-"""One length of edges, one at each point of the complex, or ``size(points)``."""
+"""One length of edges, one at each point of the mesh, or ``size(points)``."""
 
 BOUND = 1.15
 """Circumradius over shortest edge: no angle below 25.8 degrees, and still known to end."""
@@ -187,7 +187,7 @@ def refined_plane(
         Wanted lengths of edges; infinite ones ask for nothing.
     bound : float
         Of circumradius over shortest edge. It is known to end for 1.123 and more (26.4 degrees),
-        and mostly does down to 0.9 (33.7).
+        and mostly does down to 0.95 (31.8).
     budget : PlaneBudget, optional
 
     Returns
@@ -208,13 +208,38 @@ def refined_plane(
         raise ValueError(f"bound must be finite and above {SMALLEST_BOUND:.3g}, got {bound}")
     budget = budget or PlaneBudget()
     if not callable(sizes):
-        return _refined(plc, made, _at_points(sizes, plc, made), bound, budget)
+        return _refined(plc, made, _at_points(sizes, made), bound, budget)
     for _ in range(MOST_ROUNDS):
         before = len(made.points)
         made = _refined(plc, made, _evaluated(sizes, made.points), bound, budget)
         if len(made.points) == before or made.stop_reason != "finished":
             break
     return made
+
+
+def plane_sizes(
+    plc: PLC, made: PlanePieces, budget: PlaneBudget | None = None
+) -> tuple[PlanePieces, Floats]:
+    """Return triangles, and sizes at their points that follow the outline.
+
+    Delaunay refinement without a size makes edges as long as segments are and as gaps between
+    segments are wide, up to a factor that its bound gives, and longer away from there (Ruppert's
+    local feature size).
+
+    Returns
+    -------
+    fine : PlanePieces
+    sizes : (n,) float64
+        The mean length of the edges at each point; infinite at points of no triangle.
+    """
+    fine = refined_plane(plc, made, budget=budget)
+    edges = np.sort(fine.cells[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges = np.unique(edges, axis=0)
+    lengths = np.repeat(edge_lengths(fine.points, edges), 2)
+    n = len(fine.points)
+    total = np.bincount(edges.ravel(), weights=lengths, minlength=n)
+    count = np.bincount(edges.ravel(), minlength=n)
+    return fine, np.where(count > 0, total / np.maximum(count, 1), np.inf)
 
 
 def _refined(
@@ -259,14 +284,12 @@ def _most_vertices(made: PlanePieces, sizes: Floats, wished: dict[int, float]) -
     return int(min(max(FREE_VERTICES, EXCESS * (predicted + len(made.points))), 2**31 - 1))
 
 
-def _at_points(sizes: float | ArrayLike | None, plc: PLC, made: PlanePieces) -> Floats:
+def _at_points(sizes: float | ArrayLike | None, made: PlanePieces) -> Floats:
     values = np.asarray(math.inf if sizes is None else sizes, dtype=np.float64)
     if values.ndim == 0:
         values = np.full(len(made.points), float(values))
-    elif values.shape != (plc.n_points,):
-        raise ValueError(f"sizes must have shape ({plc.n_points},), not {values.shape}")
-    elif len(made.points) != plc.n_points:
-        raise ValueError("sizes at the points of the complex need the mesh before refinement")
+    elif values.shape != (len(made.points),):
+        raise ValueError(f"sizes must have shape ({len(made.points)},), not {values.shape}")
     return _checked(values)
 
 

@@ -15,6 +15,7 @@ from ..metric.base.told import Told
 from ..objects import AnyMesh, as_mesh
 from .borders import borders_of
 from .facet_loops import FacetLoops, Loops
+from .of_mesh import MeshBorder
 from .planar_facets import FLAT_ANGLE, FLATNESS, diagonal, planar_facets
 from .plc_arrays import (
     Names,
@@ -26,6 +27,7 @@ from .plc_arrays import (
     as_regions,
     as_rows,
     as_tags,
+    require_different,
     require_in_range,
 )
 from .region import Region
@@ -180,6 +182,7 @@ class PLC(Told):
         if places.shape[1] != 3:
             raise ValueError("a surface has points (n, 3)")
         require_in_range("triangles", rows, len(places))
+        require_different(rows)
         given = as_tags(tags, "tags", len(rows))
         owners = planar_facets(places, rows, given, flat_angle=flat_angle, flatness=flatness)
         first = np.unique(owners, return_index=True)[1]
@@ -200,9 +203,22 @@ class PLC(Told):
         flat_angle, flatness : float
             See `from_surface`.
         """
-        from .of_mesh import plc_of_mesh  # which makes complexes
-
-        return plc_of_mesh(as_mesh(mesh), flat_angle=flat_angle, flatness=flatness)
+        border = MeshBorder.of(as_mesh(mesh))
+        if border.points.shape[1] == 2:
+            return cls(
+                border.points,
+                edges=border.facets,
+                edge_tags=border.facet_tags,
+                **border.others,
+            )
+        return cls.from_surface(
+            border.points,
+            border.facets,
+            border.facet_tags,
+            flat_angle=flat_angle,
+            flatness=flatness,
+            **border.others,
+        )
 
     @property
     def dim(self) -> int:

@@ -25,6 +25,7 @@ void bind_nearest(nb::module_ &module);
 
 void bind_constrained(nb::module_ &module);
 void bind_check_plc(nb::module_ &module);
+void bind_refined(nb::module_ &module);
 void bind_repair(nb::module_ &module);
 
 void bind_supermesh(nb::module_ &module);

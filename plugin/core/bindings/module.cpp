@@ -27,4 +27,5 @@ NB_MODULE(_core, module) {
   bind_surface(module);
   bind_facets(module);
   bind_plane(module);
+  bind_refined(module); // its stop reasons are those of remeshing
 }

@@ -55,7 +55,8 @@ class Clock:
         try:
             yield
         finally:
-            self.seconds[step] = time.perf_counter() - began
+            taken = time.perf_counter() - began
+            self.seconds[step] = self.seconds.get(step, 0.0) + taken
 
     def seconds_left(self) -> float | None:
         """Return what is left of the budget, None without one."""

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base.arrays import Floats
-from ...metric.base.mesh import diameter
 from ...meshes.mesh import Mesh
+from ...metric.base.mesh import diameter
 from ...objects import AnyMesh
 from ..first_mesh import FirstMesh
 from ..options import GenerateOptions
@@ -35,8 +35,10 @@ EDGES_PER_DIAGONAL = 10.0
 
 def wish_for(
     first: FirstMesh, size: Sizes | None, metric: Sizes | None, options: GenerateOptions
-) -> Wish:
-    """Return all that sizes, metric, regions and widths ask for.
+) -> Wish | None:
+    """Return all that sizes, metric, names, regions and widths ask for, None where nothing does.
+
+    Delaunay refinement has cells of any size where nothing is asked for.
 
     Raises
     ------
@@ -49,7 +51,8 @@ def wish_for(
     what = "size" if metric is None else "metric"
     wishes: list[Wish] = []
     on_surface = np.full(first.mesh.n_points, np.inf)
-    largest = diameter(first.mesh) / EDGES_PER_DIAGONAL if given is None else np.inf
+    is_free = given is None and options.method == "remesh"
+    largest = diameter(first.mesh) / EDGES_PER_DIAGONAL if is_free else np.inf
     if callable(given):
         wishes.append(Evaluated(given))
     elif isinstance(given, tuple):
@@ -63,12 +66,15 @@ def wish_for(
         else:
             M = metric_of(values, first.plc.n_points, first.plc.dim, f"the {what}")
             wishes.append(Carried(first.mesh, first.at_points(M)))
-    follows = given is None if options.follow_widths is None else options.follow_widths
+    follows = is_free if options.follow_widths is None else options.follow_widths
     if follows:
         shape = first.smooth() if options.shape == "smooth" else first.mesh
         on_surface = np.minimum(on_surface, local_widths(shape))
     if options.size_at:
-        is_numbered = options.shape == "polyhedron" and first.plc.dim == 3
+        # meshes in between have numbers of facets for tags where remeshing goes by these
+        is_numbered = first.plc.dim == 3 and (
+            options.method == "refine" or options.shape == "polyhedron"
+        )
         tagged = first.tagged if is_numbered else _as_it_is
         wishes.append(Named(tagged, options.size_at, options.growth))
     in_regions = {r.tag: r.size for r in first.plc.regions if r.size is not None}
@@ -77,7 +83,7 @@ def wish_for(
         far = max([*finite.tolist(), *in_regions.values()], default=largest)
         largest = min(largest, max(far, diameter(first.mesh)))
         wishes.append(Surrounding(first.mesh, on_surface, in_regions, largest, options.growth))
-    return wishes[0] if len(wishes) == 1 else Together(wishes)
+    return Together(wishes) if len(wishes) > 1 else wishes[0] if wishes else None
 
 
 def _as_it_is(mesh: Mesh) -> Mesh:

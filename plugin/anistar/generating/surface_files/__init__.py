@@ -12,25 +12,18 @@ from ...base.errors import FormatError
 from ...formats import read_with_report
 from ...formats.parsing.reading import reading
 from ...formats.suffixes import suffix_of
-from ..of_mesh import plc_of_mesh
 from ..planar_facets import FLAT_ANGLE, FLATNESS
 from ..plc import PLC
-from . import (
-    legacy_polydata,
-    meshio_reader,
-    obj_reader,
-    of_meshes,
-    off_reader,
-    ply_reader,
-    poly_reader,
-    stl_reader,
-    vtp_reader,
-)
-from .assembly import Planar, SurfaceReport, assembled
-from .of_objects import surface_of_meshio
-from .raw_surface import RawSurface
+from .content.assembly import Planar, SurfaceReport, assembled
+from .content.raw_surface import RawSurface
+from .others import meshio_reader, of_meshes
+from .others.of_objects import surface_of_meshio
+from .surfaces import obj_reader, off_reader, ply_reader, stl_reader
+from .tetgen import poly_reader
+from .vtk import legacy_polydata, vtp_reader
+from .writing import write_plc
 
-__all__ = ["SurfaceReport", "holds_geometry", "read_plc", "read_plc_with_report"]
+__all__ = ["SurfaceReport", "holds_geometry", "read_plc", "read_plc_with_report", "write_plc"]
 
 _log = logging.getLogger(__name__)
 
@@ -106,7 +99,7 @@ def _read(path: Path, planar: Planar) -> tuple[PLC, SurfaceReport]:
         raw = of_meshes.read(path)
         if of_meshes.is_mesh(raw):
             mesh, _, told = read_with_report(path)
-            return plc_of_mesh(mesh), SurfaceReport(warnings=told.warnings)
+            return PLC.from_mesh(mesh), SurfaceReport(warnings=told.warnings)
         return assembled(of_meshes.surface_of(raw), planar)
     if meshio_reader.is_known(suffix):
         return assembled(surface_of_meshio(meshio_reader.read(path)), planar)

@@ -99,6 +99,7 @@ std::map<std::string, std::size_t> as_map(const ConstrainedCounts &counts) {
           {"steiner_points", counts.steiner_points},
           {"steiner_points_in_facets", counts.steiner_points_in_facets},
           {"flips", counts.flips},
+          {"rigid_facets", counts.rigid_facets},
           {"missing_facets", counts.missing_facets},
           {"cavities", counts.cavities},
           {"largest_cavity", counts.largest_cavity},

@@ -1,11 +1,15 @@
 #include "generate/constrained/constrained.h"
 
+#include "generate/constrained/complex.h"
 #include "generate/constrained/delaunay.h"
 #include "generate/constrained/edge_recovery.h"
 #include "generate/constrained/facet_recovery.h"
 #include "generate/constrained/flat_cells.h"
 #include "generate/constrained/output.h"
 #include "generate/constrained/regions.h"
+
+#include <algorithm>
+#include <memory>
 
 namespace anistar::generate {
 namespace {
@@ -28,28 +32,51 @@ std::vector<Index> points_in_use(const Plc &plc, const std::vector<Index> &kept)
   return used;
 }
 
+/// Facets are made rigid so often until all of them are.
+constexpr int most_attempts = 12;
+
+/// The complex with its Delaunay mesh, of which all edges of the complex are edges.
+std::unique_ptr<Complex> with_edges(const Plc &plc, const ConstrainedSettings &settings,
+                                    ConstrainedCounts &counts, Monitor &monitor) {
+  monitor.enter("Delaunay mesh");
+  const ExactPoints given(plc.points);
+  const GhostMesh start = delaunay(given, points_in_use(plc, settings.kept_points));
+  Index n_facets = 0;
+  for (const Index facet : plc.triangle_facets)
+    n_facets = std::max(n_facets, facet + 1);
+  RigidFacets rigid(n_facets, !settings.facets_may_flip);
+
+  monitor.enter("edges");
+  for (int attempt = 1;; ++attempt) {
+    if (attempt == most_attempts)
+      rigid.assign(rigid.size(), true);
+    auto complex =
+        std::make_unique<Complex>(ExactPoints(plc.points), start, FacetTriangles(plc));
+    auto &[points, mesh, facets] = *complex;
+    FacetFlips flips(points, mesh, facets);
+    if (settings.facets_may_flip)
+      flips.flip_missing_edges();
+    facets.find_planes(points);
+    EdgeRecovery edges(points, mesh, facets, rigid);
+    if (!edges.run(monitor))
+      continue;
+    counts.missing_edges = edges.counts().missing;
+    counts.steiner_points = points.steiner_points().size();
+    counts.steiner_points_in_facets = edges.counts().on_flat_lines;
+    counts.flips = flips.n_flips() + edges.counts().flips;
+    counts.rigid_facets = static_cast<std::size_t>(std::ranges::count(rigid, true));
+    return complex;
+  }
+}
+
 } // namespace
 
 Constrained constrained_tetrahedralisation(const Plc &plc,
                                            const ConstrainedSettings &settings,
                                            Monitor &monitor) {
   ConstrainedCounts counts;
-  monitor.enter("Delaunay mesh");
-  ExactPoints points(plc.points);
-  GhostMesh mesh = delaunay(points, points_in_use(plc, settings.kept_points));
-
-  monitor.enter("edges");
-  FacetTriangles facets(plc);
-  FacetFlips flips(points, mesh, facets);
-  if (settings.facets_may_flip)
-    flips.flip_missing_edges();
-  facets.find_planes(points);
-  EdgeRecovery edges(points, mesh, facets, settings.facets_may_flip ? &flips : nullptr);
-  const auto [missing, on_flat_lines] = edges.run(monitor);
-  counts.missing_edges = missing;
-  counts.steiner_points = points.steiner_points().size();
-  counts.steiner_points_in_facets = on_flat_lines;
-  counts.flips = flips.n_flips();
+  const auto complex = with_edges(plc, settings, counts, monitor);
+  auto &[points, mesh, facets] = *complex;
 
   monitor.enter("facets");
   const auto recovered = FacetRecovery(points, mesh, facets).run(monitor);

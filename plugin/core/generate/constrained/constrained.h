@@ -21,6 +21,8 @@ struct ConstrainedSettings {
 struct ConstrainedCounts {
   std::size_t missing_edges = 0, steiner_points = 0, steiner_points_in_facets = 0;
   std::size_t flips = 0;
+  std::size_t rigid_facets =
+      0; ///< that kept their triangles, as flips did not end there
   std::size_t missing_facets = 0, cavities = 0, largest_cavity = 0, rejections = 0;
   std::size_t peeled = 0;    ///< flat cells given to the outside
   std::size_t removed = 0;   ///< edges taken out of flat cells

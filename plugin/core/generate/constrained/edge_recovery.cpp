@@ -9,6 +9,9 @@
 namespace anistar::generate {
 namespace {
 
+/// So many points within a facet that may flip are no sign of trouble.
+constexpr Index points_per_facet = 4, points_per_triangle = 1;
+
 Index popped(std::vector<Index> &stack) {
   const Index last = stack.back();
   stack.pop_back();
@@ -18,11 +21,15 @@ Index popped(std::vector<Index> &stack) {
 } // namespace
 
 EdgeRecovery::EdgeRecovery(ExactPoints &points, GhostMesh &mesh, FacetTriangles &facets,
-                           FacetFlips *flips)
-    : points_(points), mesh_(mesh), facets_(facets), flips_(flips),
-      rule_(points, mesh, facets), insertion_(points, mesh) {}
+                           RigidFacets &rigid)
+    : points_(points), mesh_(mesh), facets_(facets), rigid_(rigid),
+      may_place_(rigid.size(), points_per_facet), flips_(points, mesh, facets),
+      rule_(points, mesh, facets), insertion_(points, mesh) {
+  for (const FacetTriangles::Triangle &t : facets.triangles())
+    may_place_[t.facet] += points_per_triangle;
+}
 
-EdgeRecovery::Counts EdgeRecovery::run(Monitor &monitor) {
+bool EdgeRecovery::run(Monitor &monitor) {
   push_missing_edges();
   counts_.missing = segments_.size() + flat_.size();
   while (!segments_.empty() || !flat_.empty() || !deferred_.empty()) {
@@ -37,11 +44,15 @@ EdgeRecovery::Counts EdgeRecovery::run(Monitor &monitor) {
         deferred_.push_back(edge);
     } else {
       const Index edge = popped(deferred_);
-      if (is_missing(edge) && !flip(edge))
-        split(edge);
+      if (!is_missing(edge) || flip(edge))
+        continue;
+      if (is_getting_too_many(edge))
+        return false;
+      split(edge);
     }
   }
-  return counts_;
+  counts_.flips = flips_.n_flips();
+  return true;
 }
 
 /// The longest come last: they are divided first, and spare others.
@@ -77,12 +88,24 @@ bool EdgeRecovery::is_missing(Index edge) const {
   return e.is_alive && facets_.is_required(edge) && !mesh_.find_edge(e.from, e.to);
 }
 
+Index EdgeRecovery::facet_at(Index flat_edge) const {
+  return facets_.triangles()[facets_.sides(flat_edge).front().triangle].facet;
+}
+
 bool EdgeRecovery::flip(Index edge) {
-  if (!flips_ || !flips_->should_flip(edge))
+  if (rigid_[facet_at(edge)])
     return false;
-  for (const Index required : facets_.flip_required(edge, points_))
-    flat_.push_back(required);
-  flips_->count_flip();
+  const std::vector<Index> required = flips_.flip_required(edge, points_);
+  flat_.insert(flat_.end(), required.begin(), required.end());
+  return !required.empty();
+}
+
+/// Whether a point on the edge is one too many for its facet, which becomes rigid then.
+bool EdgeRecovery::is_getting_too_many(Index flat_edge) {
+  const Index facet = facet_at(flat_edge);
+  if (rigid_[facet] || --may_place_[facet] >= 0)
+    return false;
+  rigid_[facet] = true;
   return true;
 }
 

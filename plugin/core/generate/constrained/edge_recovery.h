@@ -10,27 +10,39 @@
 
 namespace anistar::generate {
 
+/// Facets whose triangles stay as they are while edges are recovered.
+using RigidFacets = std::vector<bool>;
+
 /// What is missing is divided at Steiner points, and the mesh stays Delaunay; edges
-/// within facets give way to other diagonals first, if they may.
+/// within facets give way to other diagonals first, unless their facet is rigid.
+///
+/// Such a flip requires edges that were not, which spares points as a rule, but may go
+/// on for ever where a facet is long and all but planar: it must be rigid.
 class EdgeRecovery {
 public:
   struct Counts {
     std::size_t missing = 0;       ///< at the start
     std::size_t on_flat_lines = 0; ///< points placed within facets
+    std::size_t flips = 0;
   };
 
   EdgeRecovery(ExactPoints &points, GhostMesh &mesh, FacetTriangles &facets,
-               FacetFlips *flips);
+               RigidFacets &rigid);
 
+  /// @returns false if it has stopped, since a facet got too many points: it is rigid
+  /// now
   /// @throws MeshingError where an edge passes through a point, or what cannot be
   /// divided any more is missing; BudgetSpent
-  Counts run(Monitor &monitor);
+  [[nodiscard]] bool run(Monitor &monitor);
+  [[nodiscard]] const Counts &counts() const { return counts_; }
 
 private:
   ExactPoints &points_;
   GhostMesh &mesh_;
   FacetTriangles &facets_;
-  FacetFlips *flips_; ///< null: facets keep their triangles
+  RigidFacets &rigid_;
+  std::vector<Index> may_place_; ///< how many points each facet may get yet
+  FacetFlips flips_;
   SplitRule rule_;
   Insertion insertion_;
   Counts counts_;
@@ -41,7 +53,9 @@ private:
   void push(Index edge) { (facets_.is_flat(edge) ? flat_ : segments_).push_back(edge); }
   void push_missing_edges();
   [[nodiscard]] bool is_missing(Index edge) const;
+  [[nodiscard]] Index facet_at(Index flat_edge) const;
   bool flip(Index edge);
+  [[nodiscard]] bool is_getting_too_many(Index flat_edge);
   void split(Index edge);
   void push_lost_edges();
 };

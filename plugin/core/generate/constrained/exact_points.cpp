@@ -64,6 +64,7 @@ ExactPoints::ExactPoints(std::span<const Vector<3>> given)
     : n_given_(static_cast<Index>(given.size())), rounded_(given.begin(), given.end()),
       error_(given.size(), 0), planes_(given.size()) {}
 
+ExactPoints::ExactPoints(ExactPoints &&) noexcept = default;
 ExactPoints::~ExactPoints() = default;
 
 ExactPoints::Exact ExactPoints::exact(Index v) const {

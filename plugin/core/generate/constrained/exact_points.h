@@ -23,8 +23,7 @@ class ExactPoints {
 public:
   explicit ExactPoints(std::span<const Vector<3>> given);
   ~ExactPoints();
-  ExactPoints(const ExactPoints &) = delete;
-  ExactPoints &operator=(const ExactPoints &) = delete;
+  ExactPoints(ExactPoints &&) noexcept;
 
   /// Places a point, which lies on all planes that its ends share.
   /// @pre 0 < t < 1

@@ -44,6 +44,8 @@ bool is_delaunay_flip(const ExactPoints &points, const Quad &quad) {
 
 } // namespace
 
+/// Whether a missing edge should be the other diagonal of its quadrilateral; asked too
+/// often for the same one the answer is no.
 bool FacetFlips::should_flip(Index edge) {
   const auto quad = facets_.quad(edge);
   if (!quad || facets_.find(quad->left, quad->right) != none ||
@@ -54,6 +56,13 @@ bool FacetFlips::should_flip(Index edge) {
   const Index tries = std::max(tries_.find(quad->left, quad->right), 0);
   tries_.put(quad->left, quad->right, tries + 1);
   return tries < max_tries;
+}
+
+std::vector<Index> FacetFlips::flip_required(Index edge, ExactPoints &points) {
+  if (!should_flip(edge))
+    return {};
+  ++n_flips_;
+  return facets_.flip_required(edge, points);
 }
 
 void FacetFlips::flip_missing_edges() {

@@ -16,12 +16,11 @@ public:
   /// Flips missing edges within facets to diagonals that the mesh has, or else towards
   /// the Delaunay triangles of the facet. @pre no planes are known yet
   void flip_missing_edges();
-  /// Whether a missing edge should be the other diagonal of its quadrilateral; asked
-  /// too often for the same one the answer is no.
-  [[nodiscard]] bool should_flip(Index edge);
+  /// Flips a missing edge that is required, as above.
+  /// @returns the edges that are required from then on, none if it did not flip
+  [[nodiscard]] std::vector<Index> flip_required(Index edge, ExactPoints &points);
 
   [[nodiscard]] std::size_t n_flips() const { return n_flips_; }
-  void count_flip() { ++n_flips_; }
 
 private:
   const ExactPoints &points_;
@@ -29,6 +28,8 @@ private:
   FacetTriangles &facets_;
   EdgeTable tries_; ///< how often each diagonal was made
   std::size_t n_flips_ = 0;
+
+  [[nodiscard]] bool should_flip(Index edge);
 };
 
 } // namespace anistar::generate

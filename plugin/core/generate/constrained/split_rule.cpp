@@ -90,17 +90,19 @@ void SplitRule::refuse_point_between(const LinePart &part, Index v) const {
                        points_.rounded(v));
 }
 
-double SplitRule::near_reference(const LinePart &part, Index reference) const {
+/// Whether a point was put on a line from this end, where lines meet at acute angles.
+bool SplitRule::share_acute_end(Index end, Index reference) const {
+  if (!is_acute(end) || reference < points_.n_given())
+    return false;
+  const SteinerPoint &point = points_.steiner(reference);
+  return point.a == end || point.b == end;
+}
+
+double SplitRule::foot_of(const LinePart &part, Index reference) const {
   const Line &line = facets_.lines()[part.line];
-  const double length = std::sqrt(points_.squared_distance(line.from, line.to));
-  const double half = .5 * (part.high - part.low) * length;
-  const double from = std::sqrt(points_.squared_distance(part.from, reference)),
-               to = std::sqrt(points_.squared_distance(part.to, reference));
-  if (from < half)
-    return part.low + from / length;
-  if (to < half)
-    return part.high - to / length;
-  return .5 * (part.low + part.high);
+  const Vector<3> &start = points_.rounded(line.from);
+  const Vector<3> along = points_.rounded(line.to) - start;
+  return along.dot(points_.rounded(reference) - start) / along.squaredNorm();
 }
 
 /// On the sphere about an acute end of the line through the reference point, so that
@@ -132,12 +134,12 @@ double SplitRule::fraction(const LinePart &part) const {
     return middle;
   refuse_point_between(part, reference);
   const Line &line = facets_.lines()[part.line];
-  const bool from = is_acute(line.from), to = is_acute(line.to);
-  const bool is_whole = part.from == line.from && part.to == line.to;
-  if (from && to && is_whole)
+  const bool from = share_acute_end(line.from, reference),
+             to = share_acute_end(line.to, reference);
+  if (from && to && part.from == line.from && part.to == line.to)
     return middle;
   const double at =
-      !from && !to ? near_reference(part, reference)
+      !from && !to ? foot_of(part, reference)
                    : round_acute_end(part, reference, from && (!to || middle <= .5));
   const double margin = least_part * (part.high - part.low);
   return std::clamp(at, part.low + margin, part.high - margin);

@@ -1,6 +1,13 @@
 #pragma once
-// Where a missing edge is divided: Si, Adaptive tetrahedral mesh generation by
-// constrained Delaunay refinement, 2008, section 4.
+// Where a missing edge is divided.
+//
+// At the foot of what is in its way, which puts the new point as near to that as can
+// be. Where this was put on another line from the same acute vertex, both would be
+// divided in turns for ever: there the point is put on a sphere about that vertex, so
+// that the parts of all its lines become equally long (Si, Adaptive tetrahedral mesh
+// generation by constrained Delaunay refinement, 2008, section 4, which puts points on
+// spheres about the ends of lines in the first case as well; feet spare up to half of
+// the points).
 
 #include "generate/constrained/exact_points.h"
 #include "generate/constrained/facet_triangles.h"
@@ -32,7 +39,8 @@ private:
   [[nodiscard]] bool is_acute(Index v) const;
   [[nodiscard]] Index reference_point(const LinePart &part) const;
   void refuse_point_between(const LinePart &part, Index v) const;
-  [[nodiscard]] double near_reference(const LinePart &part, Index reference) const;
+  [[nodiscard]] bool share_acute_end(Index end, Index reference) const;
+  [[nodiscard]] double foot_of(const LinePart &part, Index reference) const;
   [[nodiscard]] double round_acute_end(const LinePart &part, Index reference,
                                        bool at_from) const;
 };

@@ -215,7 +215,7 @@ private:
 
   [[nodiscard]] std::string name_of(Index s) const {
     const auto [a, b] = complex_.segments[s];
-    return std::to_string(s) + " (" + std::to_string(a) + ", " + std::to_string(b) +
+    return std::string("(").append(std::to_string(a)).append(", ") + std::to_string(b) +
            ")";
   }
 };

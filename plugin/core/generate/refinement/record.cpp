@@ -28,6 +28,8 @@ std::string_view name_of(Refusal refusal) {
     return "hidden_by_facet";
   case Refusal::hidden_by_edge:
     return "hidden_by_edge";
+  case Refusal::against_lemma:
+    return "against_lemma";
   case Refusal::no_cavity:
     return "no_cavity";
   case Refusal::too_short:
@@ -38,10 +40,12 @@ std::string_view name_of(Refusal refusal) {
   return "";
 }
 
-void LemmaCheck::note(double ratio) {
+bool LemmaCheck::note(double ratio) {
+  const bool holds = ratio >= least_lemma_ratio;
   ++checked;
-  violated += ratio < least_lemma_ratio;
+  violated += !holds;
   least = std::min(least, ratio);
+  return holds;
 }
 
 void Rules::finish_record() {

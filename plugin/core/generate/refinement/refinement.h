@@ -56,11 +56,12 @@ enum class Refusal : std::uint8_t {
   acute_facets,        ///< all vertices are on facets, two of which form an acute pair
   hidden_by_facet,     ///< the circumcentre is beyond a facet that it does not encroach
   hidden_by_edge,      ///< the same of a facet's, beyond an edge
+  against_lemma,       ///< r_v < .7 r_p of a rejected p: what hides p's circle is encroached
   no_cavity,           ///< no point tried has a cavity that its star fills
   too_short,           ///< it would make an edge below the floor
   no_pick,             ///< no pick in the refinement region helps against a sliver
 };
-inline constexpr std::size_t n_refusals = 10;
+inline constexpr std::size_t n_refusals = 11;
 [[nodiscard]] std::string_view name_of(Refusal refusal);
 
 /// r_v / r_p of points v whose parent p was rejected: the lemma says 1 / sqrt 2.
@@ -68,7 +69,8 @@ struct LemmaCheck {
   std::size_t checked = 0, violated = 0;
   double least = std::numeric_limits<double>::infinity();
 
-  void note(double ratio);
+  /// Whether the ratio is as the lemma says.
+  bool note(double ratio);
 };
 
 /// Points that the rules have inserted.

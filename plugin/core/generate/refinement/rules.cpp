@@ -7,7 +7,9 @@ namespace {
 
 /// Where the centre itself has no cavity that its star fills, points near to it are tried.
 constexpr PickRule centre_first{.delta = .05, .n_picks = 6, .must_avoid_slivers = false};
-constexpr int most_tries_of_edge = 3;
+constexpr int most_tries_of_edge = 20;
+/// As a fraction of the points, inverted.
+constexpr std::size_t growth_before_retry = 50;
 
 double diagonal_of(const std::vector<Vector<3>> &points) {
   Vector<3> low = points.front(), high = low;
@@ -48,14 +50,30 @@ void Rules::queue_all() {
 
 /// Rule 1: an encroached constrained edge.
 bool Rules::apply_rule_1() {
-  const std::optional<WaitingEdge> waiting = queues_.edges.pop();
+  std::optional<WaitingEdge> waiting = queues_.edges.pop();
+  if (!waiting && try_put_off_edges())
+    waiting = queues_.edges.pop();
   if (!waiting)
     return false;
   const Segment &e = waiting->edge;
   if (!exists(e) || !(is_encroached(e) || is_long(e)))
     return true;
-  if (refine_edge(e, {.r_g = 0}) == Outcome::refused)
-    refuse_edge(*waiting);
+  if (refine_edge(e, {.r_g = 0}) == Outcome::refused && waiting->tries < most_tries_of_edge)
+    put_off_.push_back({e, waiting->tries + 1});
+  return true;
+}
+
+/// Where the point of one edge encroaches upon another, as with long ones side by side,
+/// neither may have a cavity that its star fills before the other, or one further on, is
+/// split. So those that failed are tried again when others have been.
+bool Rules::try_put_off_edges() {
+  if (put_off_.empty() || insertions_->edges == edges_at_last_try_)
+    return false;
+  edges_at_last_try_ = insertions_->edges;
+  blocked_at_.clear();
+  for (const WaitingEdge &waiting : put_off_)
+    queues_.edges.push(waiting);
+  put_off_.clear();
   return true;
 }
 
@@ -105,10 +123,13 @@ Outcome Rules::refine_edge(const Segment &edge, const Cause &cause) {
     const double least = clusters_.least_insertion_radius(mesh_, segment, e[0], e[1]);
     if (!cause.needs_no_longer && least <= cause.r_g)
       return refuse(Refusal::edge_not_longer);
-    record_.edge_lemma.note(r_e / cause.r_rejected);
+    if (!record_.edge_lemma.note(r_e / cause.r_rejected))
+      return refuse(Refusal::against_lemma);
   }
   if (r_e < floor_)
     return refuse(Refusal::too_short);
+  if (is_blocked(e))
+    return refuse(Refusal::no_cavity);
   const double middle = clusters_.split_fraction(mesh_, segment, e[0], e[1]);
   const bool is_at_cluster = middle != .5;
   Picks picks(pick_rule_, settings_.seed, n_regions_++);
@@ -121,7 +142,16 @@ Outcome Rules::refine_edge(const Segment &edge, const Cause &cause) {
     if (is_at_cluster)
       break;
   }
+  if (!best.site)
+    blocked_at_[e] = mesh_.points.size();
   return insert_best(best, cause, Refusal::no_cavity);
+}
+
+/// An edge that had no cavity has none before enough has changed.
+bool Rules::is_blocked(const Segment &e) const {
+  const auto found = blocked_at_.find(e);
+  return found != blocked_at_.end() &&
+         mesh_.points.size() < found->second + found->second / growth_before_retry;
 }
 
 /// conditionally-refine-facet(f): c = circumcenter(f); if c encroaches a constrained edge
@@ -129,8 +159,8 @@ Outcome Rules::refine_edge(const Segment &edge, const Cause &cause) {
 Outcome Rules::conditionally_refine_facet(HalfFacet f, const Cause &cause) {
   const Ball ball = diametral_ball_of(f);
   const double r_f = ball.radius;
-  if (cause.r_rejected > 0)
-    record_.facet_lemma.note(r_f / cause.r_rejected);
+  if (cause.r_rejected > 0 && !record_.facet_lemma.note(r_f / cause.r_rejected))
+    return refuse(Refusal::against_lemma);
   if (r_f < floor_)
     return refuse(Refusal::too_short);
   const Facet<3> v = mesh_.facet(f);
@@ -227,24 +257,6 @@ std::optional<Refusal> Rules::acute_refusal(Index t, const CellShape &shape) con
       if (join(cell[i], cell[j]))
         return Refusal::acute_facets;
   return {};
-}
-
-/// An edge that must be split and cannot: what its point encroaches upon may be in the
-/// way, so that goes first.
-Outcome Rules::refuse_edge(const WaitingEdge &waiting) {
-  if (waiting.tries >= most_tries_of_edge)
-    return Outcome::refused;
-  const Segment &e = waiting.edge;
-  const Site site = edge_site(e, .5);
-  (void)cavity_.gather(mesh_, site);
-  find_encroached_edges(site.x);
-  std::erase(edges_, e);
-  if (edges_.empty())
-    return Outcome::refused;
-  for (const Segment &obstacle : edges_)
-    queues_.edges.push({obstacle, waiting.tries + 1});
-  queues_.edges.push({e, waiting.tries + 1});
-  return Outcome::elsewhere;
 }
 
 /// The subsegments of the cavity that a point encroaches upon.

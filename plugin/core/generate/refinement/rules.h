@@ -12,6 +12,7 @@
 #include "generate/refinement/size_field.h"
 #include "generate/refinement/spheres.h"
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -86,6 +87,9 @@ private:
   Insertions *insertions_;
   bool eliminates_slivers_ = false;
   std::int32_t n_regions_ = 0; ///< refinement regions so far
+  std::vector<WaitingEdge> put_off_;
+  std::size_t edges_at_last_try_ = 0;
+  std::map<Segment, std::size_t> blocked_at_; ///< number of points at the failure
   std::vector<Segment> edges_;
   std::vector<Index> fan_;
 
@@ -107,7 +111,8 @@ private:
     ++record_.of(refusal);
     return Outcome::refused;
   }
-  Outcome refuse_edge(const WaitingEdge &waiting);
+  bool try_put_off_edges();
+  [[nodiscard]] bool is_blocked(const Segment &e) const;
   [[nodiscard]] bool takes(const Site &site, double r_tau, BestPick &best);
   Outcome insert(const Site &site);
   Outcome insert_best(const BestPick &best, const Cause &cause, Refusal otherwise);

@@ -15,14 +15,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.arrays import AnyArray, Floats
-from ...formats.parsing.numbering import Numbering
-from ...formats.parsing.reading import reading
-from ...formats.suffixes import suffix_of
-from ...metric.kernels.elementary import power
-from ..plc import PLC
-from ..region import Region
-from .lines import Lines
+from ....base.arrays import AnyArray, Floats
+from ....formats.parsing.numbering import Numbering
+from ....formats.parsing.reading import reading
+from ....formats.suffixes import suffix_of
+from ....metric.kernels.elementary import power
+from ...plc import PLC
+from ...region import Region
+from ..content.lines import Lines
 from .poly_facets import PolyFacet, facets_of
 
 
@@ -88,7 +88,7 @@ def _outline(lines: Lines, nodes: _Nodes) -> PLC:
         tags.append(row[3] if has_marker and len(row) > 3 else 0)
     edges = nodes.numbers.rows(np.array(ends, np.float64).reshape(-1, 2))
     holes, regions = _holes(lines, 2), _regions(lines, 2)
-    free = np.setdiff1d(np.arange(len(nodes.points)), edges)
+    free = np.setdiff1d(np.arange(len(nodes.points), dtype=np.int32), edges.astype(np.int32))
     return PLC(
         nodes.points,
         edges=edges,
@@ -108,7 +108,7 @@ def _complex(
     facets, tags = facets_of(nodes.points, given)
     holes, regions = _holes(lines, 3), _regions(lines, 3)
     used = [index for facet in facets for loop in facet for index in loop]
-    free = np.setdiff1d(np.arange(len(nodes.points)), np.array(used, np.int64))
+    free = np.setdiff1d(np.arange(len(nodes.points), dtype=np.int32), np.array(used, np.int32))
     if len(free):
         notes.append(f"{len(free)} point(s) of no facet are points of the mesh")
     return PLC(
@@ -162,7 +162,7 @@ def _holes(lines: Lines, dim: int) -> AnyArray:
     return np.array(rows, np.float64).reshape(-1, dim)
 
 
-def _regions(lines: Lines, dim: int) -> list[Region]:
+def _regions(lines: Lines, dim: int) -> tuple[Region, ...]:
     regions = []
     for number in range(_announced(lines)):
         words = lines.next()
@@ -175,7 +175,7 @@ def _regions(lines: Lines, dim: int) -> list[Region]:
         largest = values[dim + 1] if len(values) > dim + 1 else -1.0
         size = _size_of(largest, dim) if largest > 0 else None
         regions.append(Region(values[:dim], int(attribute), size))
-    return regions
+    return tuple(regions)
 
 
 def _size_of(measure: float, dim: int) -> float:

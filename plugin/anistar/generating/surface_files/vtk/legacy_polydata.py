@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.arrays import AnyArray
-from ...formats.content.raw import not_read
-from ...formats.parsing.cursor import Cursor
-from ...formats.parsing.reading import reading
-from ...formats.vtk.legacy_arrays import Arrays, count_in, word_in
-from ...formats.vtk.legacy_numbers import LegacyNumbers
+from ....base.arrays import AnyArray
+from ....formats.content.raw import not_read
+from ....formats.parsing.cursor import Cursor
+from ....formats.parsing.reading import reading
+from ....formats.vtk.legacy_arrays import Arrays, count_in, word_in
+from ....formats.vtk.legacy_numbers import LegacyNumbers
+from ..content.raw_surface import Faces, RawSurface
+from ..content.sized_rows import sized_rows
 from .polydata import surface_of_cells
-from .raw_surface import Faces, RawSurface
-from .sized_rows import sized_rows
 
 _CELLS = {
     "VERTICES": "verts",

@@ -16,10 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.arrays import AnyArray
-from ...formats.parsing.reading import reading
-from ...formats.parsing.text_rows import parsed
-from .raw_surface import Faces, RawSurface
+from ....base.arrays import AnyArray
+from ....formats.parsing.reading import reading
+from ....formats.parsing.text_rows import parsed
+from ..content.raw_surface import Faces, RawSurface
 
 _HEADER, _COUNT = 80, 4
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -110,7 +110,8 @@ def _is_end(data: bytes, at: int) -> bool:
 
 def _solid(data: bytes, at: int) -> tuple[AnyArray, int]:
     """Return the corners in a solid, and where it ends."""
-    start, found = at, []
+    start = at
+    found: list[bytes] = []
     while (facet := _FACET.match(data, at)) is not None:
         found += facet.groups()
         at = facet.end()

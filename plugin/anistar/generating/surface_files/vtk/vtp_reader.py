@@ -7,15 +7,15 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ...base.arrays import AnyArray
-from ...formats.content.raw import not_read
-from ...formats.content.tag_arrays import FOREIGN_TAGS, NAMES, TAGS, decoded_names
-from ...formats.parsing.reading import reading
-from ...formats.parsing.xml_tree import attribute, count, only_child, root_of
-from ...formats.vtk.vtu_arrays import Encoding, numbers_of
-from ...formats.vtk.vtu_reader import parted
+from ....base.arrays import AnyArray
+from ....formats.content.raw import not_read
+from ....formats.content.tag_arrays import FOREIGN_TAGS, NAMES, TAGS, decoded_names
+from ....formats.parsing.reading import reading
+from ....formats.parsing.xml_tree import attribute, count, only_child, root_of
+from ....formats.vtk.vtu_arrays import Encoding, numbers_of
+from ....formats.vtk.vtu_reader import parted
+from ..content.raw_surface import Faces, RawSurface
 from .polydata import surface_of_cells
-from .raw_surface import Faces, RawSurface
 
 _CELLS = ("Verts", "Lines", "Polys", "Strips")
 

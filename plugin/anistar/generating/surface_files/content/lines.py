@@ -13,11 +13,14 @@ class Lines:
     data : bytes
     comment : str
         The mark, empty if there is none.
+    continuation : str
+        What a line ends with that goes on in the next one, empty if there is nothing like it.
     """
 
-    def __init__(self, data: bytes, *, comment: str = "#") -> None:
+    def __init__(self, data: bytes, *, comment: str = "#", continuation: str = "") -> None:
         self._lines = data.decode("utf-8", errors="replace").splitlines()
         self._comment = comment
+        self._continuation = continuation
         self._at = 0
 
     @property
@@ -41,12 +44,23 @@ class Lines:
     def next_or_none(self) -> list[str] | None:
         """Return the words of the next line that has any, None at the end."""
         while self._at < len(self._lines):
-            line = self._lines[self._at]
-            self._at += 1
+            line = self._next_joined()
             words = (line.partition(self._comment)[0] if self._comment else line).split()
             if words:
                 return words
         return None
+
+    def _next_joined(self) -> str:
+        line = self._lines[self._at]
+        self._at += 1
+        if not self._continuation:
+            return line
+        parts = []
+        while line.endswith(self._continuation) and self._at < len(self._lines):
+            parts.append(line.removesuffix(self._continuation))
+            line = self._lines[self._at]
+            self._at += 1
+        return " ".join([*parts, line])
 
     def __iter__(self) -> Iterator[list[str]]:
         while (words := self.next_or_none()) is not None:

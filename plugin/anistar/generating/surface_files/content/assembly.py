@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ... import _core
-from ...base.arrays import AnyArray
-from ..planar_facets import FLAT_ANGLE, FLATNESS
-from ..plc import PLC
-from ..plc_arrays import require_in_range
+from .... import _core
+from ....base.arrays import AnyArray
+from ...planar_facets import FLAT_ANGLE, FLATNESS
+from ...plc import PLC
+from ...plc_arrays import require_in_range
 from .raw_surface import Faces, RawSurface
 
 

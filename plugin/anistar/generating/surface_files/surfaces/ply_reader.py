@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.arrays import AnyArray
-from ...formats.content.raw import not_read
-from ...formats.parsing.cursor import Cursor, Order
-from ...formats.parsing.reading import reading
+from ....base.arrays import AnyArray
+from ....formats.content.raw import not_read
+from ....formats.parsing.cursor import Cursor, Order
+from ....formats.parsing.reading import reading
+from ..content.raw_surface import Faces, RawSurface
 from .ply_rows import Property, binary_rows, text_rows
-from .raw_surface import Faces, RawSurface
 
 _FORMATS: dict[str, Order | None] = {
     "ascii": None,

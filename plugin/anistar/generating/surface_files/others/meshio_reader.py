@@ -8,7 +8,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from ...base.errors import FormatError
+from ....base.errors import FormatError
 
 
 def is_known(suffix: str) -> bool:

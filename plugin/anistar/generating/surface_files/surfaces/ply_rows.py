@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.arrays import AnyArray
-from ...formats.parsing.cursor import Cursor
-from .raw_surface import Faces
+from ....base.arrays import AnyArray
+from ....formats.parsing.cursor import Cursor
+from ..content.raw_surface import Faces
 
 _TYPES = {
     "char": "i1",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...base.arrays import AnyArray
-from ...formats.content.tag_arrays import FOREIGN_TAGS, TAGS
-from .raw_surface import Faces, RawSurface
+from ....base.arrays import AnyArray
+from ....formats.content.tag_arrays import FOREIGN_TAGS, TAGS
+from ..content.raw_surface import Faces, RawSurface
 
 
 def surface_of_cells(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...base.arrays import AnyArray
+from ....base.arrays import AnyArray
 
 
 def sized_rows(values: AnyArray, at: int) -> tuple[AnyArray, int]:

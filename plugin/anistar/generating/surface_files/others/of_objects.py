@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from ...formats.content.raw import Block, RawMesh
-from ...formats.content.tag_arrays import take_tags
+from ....formats.content.raw import Block, RawMesh
+from ....formats.content.tag_arrays import take_tags
+from ..content.raw_surface import Faces, RawSurface
+from ..vtk.polydata import surface_of_cells
 from .of_meshes import surface_of
-from .polydata import surface_of_cells
-from .raw_surface import Faces, RawSurface
 
 
 def surface_of_meshio(mesh: Any) -> RawSurface:

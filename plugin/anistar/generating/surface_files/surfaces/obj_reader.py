@@ -16,10 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ...formats.content.raw import not_read
-from ...formats.parsing.reading import reading
-from .lines import Lines
-from .raw_surface import Faces, RawSurface
+from ....formats.content.raw import not_read
+from ....formats.parsing.reading import reading
+from ..content.lines import Lines
+from ..content.raw_surface import Faces, RawSurface
 
 _GROUPINGS = ("o", "g", "usemtl")
 _SILENT = ("vt", "vn", "s", "mtllib", "lod", "shadow_obj", "trace_obj", "bevel", "c_interp")
@@ -86,7 +86,7 @@ def read(path: Path) -> RawSurface:
         If something is no number or refers to no point; names the line.
     """
     with reading(path):
-        lines = Lines(path.read_bytes().replace(b"\\\r\n", b" ").replace(b"\\\n", b" "))
+        lines = Lines(path.read_bytes(), continuation="\\")
         content = _Content(lines)
         for words in lines:
             content.read(words)

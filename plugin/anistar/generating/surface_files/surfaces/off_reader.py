@@ -4,7 +4,8 @@ Normals, colours and texture coordinates that a prefix of the word OFF announces
 
 References
 ----------
-Geomview manual, "OFF Files": [ST][C][N][4][n]OFF [BINARY]; binary files are big endian.
+Geomview manual, "OFF Files": [ST][C][N][4][n]OFF [BINARY]; binary files are big endian, but some
+programs write them in the order of their CPU, which the counts show.
 """
 
 from __future__ import annotations
@@ -14,12 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.arrays import AnyArray
-from ...formats.parsing.cursor import Cursor
-from ...formats.parsing.reading import reading
-from .lines import Lines
-from .raw_surface import Faces, RawSurface
-from .sized_rows import sized_rows
+from ....base.arrays import AnyArray
+from ....formats.parsing.cursor import Cursor
+from ....formats.parsing.reading import reading
+from ..content.lines import Lines
+from ..content.raw_surface import Faces, RawSurface
 
 _HEADER = re.compile(rb"\s*(ST)?(C)?(N)?(4)?(n)?OFF\b[^\S\n]*(BINARY)?")
 _N_COUNTS = 3
@@ -75,8 +75,11 @@ def _first(lines: Lines, words: list[str], n: int) -> list[float]:
 
 def _binary(data: bytes, at: int, width: int) -> RawSurface:
     cursor = Cursor(data, ">")
-    cursor.at = data.find(b"\n", at) + 1
+    cursor.at = start = data.find(b"\n", at) + 1
     n_points, n_faces, _ = cursor.take("i4", _N_COUNTS).tolist()
+    if not 0 <= n_points * width * 4 <= len(data):  # CGAL and others write as their CPU does
+        cursor.order, cursor.at = "<", start
+        n_points, n_faces, _ = cursor.take("i4", _N_COUNTS).tolist()
     points = cursor.take("f4", n_points * width).reshape(-1, width)[:, :3]
     faces, n_coloured = _binary_faces(cursor, n_faces)
     raw = RawSurface(points.astype(np.float64), faces)
@@ -85,21 +88,37 @@ def _binary(data: bytes, at: int, width: int) -> RawSurface:
 
 
 def _binary_faces(cursor: Cursor, n_faces: int) -> tuple[Faces, int]:
-    """Return the faces, each its size, its points, and the number of its colours and those."""
+    """Return the faces, each its size, its points, and the number of its colours and those.
+
+    Some programs leave the number of colours out where there are none.
+    """
     words = cursor.take("i4", (len(cursor.data) - cursor.at) // 4)
+    faces, n_coloured, end = _rows(words, n_faces, has_colours=True)
+    if len(faces) < n_faces or end != len(words):
+        plain, _, plain_end = _rows(words, n_faces, has_colours=False)
+        if len(plain) == n_faces and plain_end == len(words):
+            return plain, 0
+    if len(faces) < n_faces:
+        raise ValueError(f"it is truncated: {len(faces)} of {n_faces} faces are there")
+    return faces, n_coloured
+
+
+def _rows(words: AnyArray, n_faces: int, *, has_colours: bool) -> tuple[Faces, int, int]:
+    """Return the faces that are whole, how many of them have colours, and where they end."""
     parts: list[AnyArray] = []
-    n_coloured = 0
-    at = 0
-    for _ in range(n_faces):
-        row, at = sized_rows(words, at)
-        n_colours = int(words[at]) if at < len(words) else -1
-        if n_colours < 0:
-            raise ValueError(f"it is truncated: {len(parts)} of {n_faces} faces are there")
-        at += 1 + n_colours
+    n_coloured = at = 0
+    while len(parts) < n_faces and at < len(words):
+        end = at + 1 + int(words[at])
+        n_colours = int(words[end]) if has_colours and at < end < len(words) else 0
+        is_whole = at < end and end + n_colours + has_colours <= len(words) and n_colours >= 0
+        if not is_whole:
+            break
+        parts.append(words[at + 1 : end])
         n_coloured += n_colours > 0
-        parts.append(row)
+        at = end + n_colours + has_colours
     indices = np.concatenate([np.zeros(0, np.int64), *parts]).astype(np.int64)
-    return Faces(indices, np.array([len(part) for part in parts], np.int64)), n_coloured
+    sizes = np.array([len(part) for part in parts], np.int64)
+    return Faces(indices, sizes), n_coloured, at
 
 
 def _tell_colours(raw: RawSurface, n_coloured: int) -> None:

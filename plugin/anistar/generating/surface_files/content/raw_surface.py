@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...base.arrays import AnyArray, Floats
-from ..plc_arrays import Names
-from ..region import Region
+from ....base.arrays import AnyArray, Floats
+from ...plc_arrays import Names
+from ...region import Region
 
 
 def _none() -> AnyArray:
@@ -39,7 +39,7 @@ class Faces:
     @property
     def starts(self) -> AnyArray:
         """Where each face starts in the indices, and their length."""
-        return np.r_[0, np.cumsum(self.sizes)].astype(np.int64)
+        return np.concatenate([[0], np.cumsum(self.sizes)]).astype(np.int64)
 
     def __len__(self) -> int:
         return len(self.sizes)

@@ -7,18 +7,18 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.arrays import AnyArray
-from ...base.errors import FormatError
-from ...formats import inp_reader, med_reader, su2_reader
-from ...formats.content.kinds import KINDS
-from ...formats.content.raw import REFUSED, Block, RawMesh
-from ...formats.content.second_order import corners_of
-from ...formats.gmsh import converter
-from ...formats.gmsh import reader as gmsh_reader
-from ...formats.medit import files as medit_files
-from ...formats.suffixes import suffix_of
-from ...formats.vtk import legacy_reader, vtu_reader
-from .raw_surface import Faces, RawSurface
+from ....base.arrays import AnyArray
+from ....base.errors import FormatError
+from ....formats import inp_reader, med_reader, su2_reader
+from ....formats.content.kinds import KINDS
+from ....formats.content.raw import REFUSED, Block, RawMesh
+from ....formats.content.second_order import corners_of
+from ....formats.gmsh import converter
+from ....formats.gmsh import reader as gmsh_reader
+from ....formats.medit import files as medit_files
+from ....formats.suffixes import suffix_of
+from ....formats.vtk import legacy_reader, vtu_reader
+from ..content.raw_surface import Faces, RawSurface
 
 READERS: dict[str, Callable[[Path], RawMesh]] = {
     ".inp": inp_reader.read,
