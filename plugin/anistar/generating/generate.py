@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import Any
 
 from ..base.progress import task
@@ -24,7 +25,7 @@ from .report import GenerateReport
 from .report.measures import FacetMeasures
 from .report.shapes import CellShapes
 from .result import Generated
-from .sizes.wanted import Sizes, wish_for
+from .sizes.wanted import Sizes, wanted_of
 from .surface_files import read_plc_with_report
 
 
@@ -151,8 +152,6 @@ def _finished(
         return Stage(mesh=first.tagged(), numbered=first.mesh)
     if options.method == "refine" and metric is not None:
         raise ValueError('method="refine" makes isotropic meshes: give the metric to "remesh"')
-    wish = wish_for(first, size, metric, options)
-    if options.method == "refine":
-        return refined(first, wish, options, clock)
-    assert wish is not None  # remeshing follows widths at least
-    return remeshed(first, wish, options, clock)
+    wanted = wanted_of(first, size, metric, options)
+    make = refined if options.method == "refine" else remeshed
+    return replace(make(first, wanted.wish, options, clock), warnings=wanted.warnings)

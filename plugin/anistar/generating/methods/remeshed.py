@@ -25,8 +25,10 @@ SETTLED = 0.05
 FIRST_LOOK = 20.0
 
 
-def remeshed(first: FirstMesh, wish: Wish, options: GenerateOptions, clock: Clock) -> Stage:
+def remeshed(first: FirstMesh, wish: Wish | None, options: GenerateOptions, clock: Clock) -> Stage:
     """Return the mesh that has what is wished for, within the options."""
+    if wish is None:
+        raise ValueError("there is no size to remesh to")
     # in the plane, a line of segments that go straight on is one curve, which numbers would cut
     is_numbered = options.shape == "polyhedron" and first.plc.dim == 3
     mesh = geometry = first.mesh if is_numbered else first.smooth()

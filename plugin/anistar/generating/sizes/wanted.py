@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from ...metric.base.mesh import diameter
 from ...objects import AnyMesh
 from ..first_mesh import FirstMesh
 from ..options import GenerateOptions
-from .widths import local_widths
+from .widths import affordable, local_widths
 from .wishes import (
     Carried,
     Evaluated,
@@ -33,10 +34,18 @@ Sizes = float | ArrayLike | Callable[[Floats], ArrayLike] | tuple[AnyMesh, Any]
 EDGES_PER_DIAGONAL = 10.0
 
 
-def wish_for(
+@dataclass(frozen=True)
+class Wanted:
+    """What is wanted, None where anything will do, and what could not be had."""
+
+    wish: Wish | None
+    warnings: tuple[str, ...] = ()
+
+
+def wanted_of(
     first: FirstMesh, size: Sizes | None, metric: Sizes | None, options: GenerateOptions
-) -> Wish | None:
-    """Return all that sizes, metric, names, regions and widths ask for, None where nothing does.
+) -> Wanted:
+    """Return all that sizes, metric, names, regions and widths ask for.
 
     Delaunay refinement has cells of any size where nothing is asked for.
 
@@ -47,43 +56,54 @@ def wish_for(
     """
     if size is not None and metric is not None:
         raise ValueError("give a size or a metric, not both: intersect them where both hold")
-    given = size if metric is None else metric
-    what = "size" if metric is None else "metric"
+    given, what = (size, "size") if metric is None else (metric, "metric")
+    is_free = given is None and options.method == "remesh"
     wishes: list[Wish] = []
     on_surface = np.full(first.mesh.n_points, np.inf)
-    is_free = given is None and options.method == "remesh"
-    largest = diameter(first.mesh) / EDGES_PER_DIAGONAL if is_free else np.inf
-    if callable(given):
-        wishes.append(Evaluated(given))
-    elif isinstance(given, tuple):
-        wishes.append(carried_from(given))
+    if isinstance(given, np.ndarray | list) and np.ndim(given) == 1:
+        on_surface = first.at_points(_sizes(np.asarray(given, dtype=np.float64), first))
     elif given is not None:
-        values = np.asarray(given, dtype=np.float64)
-        if values.ndim == 0:
-            wishes.append(Uniform(_positive(float(values), what)))
-        elif values.ndim == 1:
-            on_surface = first.at_points(_sizes(values, first))
-        else:
-            M = metric_of(values, first.plc.n_points, first.plc.dim, f"the {what}")
-            wishes.append(Carried(first.mesh, first.at_points(M)))
-    follows = is_free if options.follow_widths is None else options.follow_widths
-    if follows:
-        shape = first.smooth() if options.shape == "smooth" else first.mesh
-        on_surface = np.minimum(on_surface, local_widths(shape))
+        wishes.append(_as_wish(given, what, first))
     if options.size_at:
-        # meshes in between have numbers of facets for tags where remeshing goes by these
-        is_numbered = first.plc.dim == 3 and (
-            options.method == "refine" or options.shape == "polyhedron"
-        )
-        tagged = first.tagged if is_numbered else _as_it_is
-        wishes.append(Named(tagged, options.size_at, options.growth))
-    in_regions = {r.tag: r.size for r in first.plc.regions if r.size is not None}
-    if np.isfinite(largest) or np.isfinite(on_surface).any() or in_regions:
-        finite = on_surface[np.isfinite(on_surface)]
-        far = max([*finite.tolist(), *in_regions.values()], default=largest)
-        largest = min(largest, max(far, diameter(first.mesh)))
-        wishes.append(Surrounding(first.mesh, on_surface, in_regions, largest, options.growth))
-    return Together(wishes) if len(wishes) > 1 else wishes[0] if wishes else None
+        wishes.append(Named(_tagging(first, options), options.size_at, options.growth))
+    warnings: tuple[str, ...] = ()
+    if is_free if options.follow_widths is None else options.follow_widths:
+        shape = first.smooth() if options.shape == "smooth" else first.mesh
+        widths = local_widths(shape)
+        if options.follow_widths is None:
+            widths, warnings = affordable(first.mesh, widths)
+        on_surface = np.minimum(on_surface, widths)
+    extent = diameter(first.mesh)
+    around = Surrounding(
+        first=first.mesh,
+        sizes=on_surface,
+        in_regions={r.tag: r.size for r in first.plc.regions if r.size is not None},
+        largest=extent / EDGES_PER_DIAGONAL if is_free else extent,
+        growth=options.growth,
+    )
+    if is_free or around.asks:
+        wishes.append(around)
+    wish = Together(wishes) if len(wishes) > 1 else wishes[0] if wishes else None
+    return Wanted(wish, warnings)
+
+
+def _as_wish(given: Any, what: str, first: FirstMesh) -> Wish:
+    """Return a function, a pair, a number or a metric at the points as a wish."""
+    if callable(given):
+        return Evaluated(given)
+    if isinstance(given, tuple):
+        return carried_from(given)
+    values = np.asarray(given, dtype=np.float64)
+    if values.ndim == 0:
+        return Uniform(_positive(float(values), what))
+    M = metric_of(values, first.plc.n_points, first.plc.dim, f"the {what}")
+    return Carried(first.mesh, first.at_points(M))
+
+
+def _tagging(first: FirstMesh, options: GenerateOptions) -> Callable[[Mesh], Mesh]:
+    """Return what gives the meshes in between the tags of the geometry."""
+    goes_by_numbers = options.method == "refine" or options.shape == "polyhedron"
+    return first.tagged if first.plc.dim == 3 and goes_by_numbers else _as_it_is
 
 
 def _as_it_is(mesh: Mesh) -> Mesh:

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ...base.arrays import Bools, Floats, Ints, Longs
 from ...meshes.mesh import Mesh
-from ...meshes.topology import edge_lengths, facet_table, vector_lengths
+from ...meshes.topology import edge_lengths, facet_measures, facet_table, vector_lengths
+from ...metric.base.mesh import diameter
+
+#: A mesh without a given size has so many points on its facets at most, or about.
+MOST_ON_SURFACE = 40_000.0
+
+#: Area of the surface for each point of equilateral triangles with unit edges.
+EQUILATERAL_POINT = math.sqrt(3.0) / 2.0
+
+#: Enough to find a size to six digits.
+BISECTIONS = 40
 
 #: The sides of a triangle, and the corner opposite each.
 SIDES = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
@@ -35,6 +47,37 @@ def local_widths(mesh: Mesh) -> Floats:
     if mesh.dim == 3:
         _lower_across_cells(widths, mesh)
     return widths
+
+
+def affordable(mesh: Mesh, widths: Floats) -> tuple[Floats, tuple[str, ...]]:
+    """Return widths below which no mesh of moderate size can go, and what that is to be told.
+
+    Nobody who gives no size waits for millions of cells in a narrow gap.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    widths : (n,) float64
+        At its points.
+    """
+    areas = facet_measures(mesh.points, mesh.facets)
+    sizes = np.minimum(widths, diameter(mesh))[mesh.facets].min(axis=1)
+    low, high = float(sizes.min()), diameter(mesh)
+    if mesh.dim == 2 or _points_on(areas, sizes, low) <= MOST_ON_SURFACE:
+        return widths, ()
+    for _ in range(BISECTIONS):
+        middle = math.sqrt(low * high)
+        few = _points_on(areas, sizes, middle) <= MOST_ON_SURFACE
+        low, high = (low, middle) if few else (middle, high)
+    return np.maximum(widths, high), (
+        f"sizes follow the widths of facets down to {high:.3g} only: narrower parts have flat "
+        "cells; follow_widths=True goes on, a size is taken as it is",
+    )
+
+
+def _points_on(areas: Floats, sizes: Floats, floor: float) -> float:
+    """Return how many points equilateral triangles of the sizes, none below a floor, have."""
+    return float((areas / (EQUILATERAL_POINT * np.square(np.maximum(sizes, floor)))).sum())
 
 
 def _lower_across_triangles(

@@ -127,6 +127,11 @@ class Surrounding:
     is_settled: ClassVar[bool] = False
     may_surprise: ClassVar[bool] = False
 
+    @property
+    def asks(self) -> bool:
+        """Whether there is a size on the surface or in a region."""
+        return bool(np.isfinite(self.sizes).any()) or bool(self.in_regions)
+
     def metric_on(self, mesh: Mesh) -> Floats:
         """Return the isotropic metric of the sizes, graded on the mesh."""
         sizes = np.full(mesh.n_points, self.largest)
