@@ -20,10 +20,10 @@ def folder(tmp_path, monkeypatch):
     two = np.concatenate([POINTS, POINTS + 0.4]), [*TRIANGLES, *(np.array(TRIANGLES) + 8)]
     surfaces = {"cube": (POINTS, TRIANGLES), "open": (POINTS, TRIANGLES[:-2]), "two": two}
     for name, (points, triangles) in surfaces.items():
-        for suffix in ("stl", "obj", "off", "ply", "mesh", "msh"):
-            meshio.write(
-                f"{name}.{suffix}", meshio.Mesh(points, [("triangle", np.array(triangles))])
-            )
+        mesh = meshio.Mesh(points, [("triangle", np.array(triangles))])
+        for suffix in ("stl", "obj", "off", "ply", "mesh"):
+            meshio.write(f"{name}.{suffix}", mesh)
+        meshio.write(f"{name}.msh", mesh, "gmsh")
     return tmp_path
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from ... import _core
+from ...base.arrays import Bools
 from ...base.errors import MeshingError
 from ..checking import check_plc
 from ..plc import PLC
@@ -74,29 +76,40 @@ def _unchanged(plc: PLC, tolerance: float) -> tuple[PLC, RepairReport]:
 
 
 def _oriented(plc: PLC, tolerance: float) -> tuple[PLC, RepairReport]:
-    """Turn the loops of facets: a facet is of one sense already."""
+    """Turn facets, which are of one sense each."""
     is_turned, _, n_one_sided = _core.turned_triangles(plc.points, plc.triangles)
     turned = np.zeros(plc.n_facets, bool)
     turned[plc.triangle_facets[is_turned.astype(bool)]] = True
+    n_turned = int(np.count_nonzero(turned))
+    report = RepairReport(
+        repair="orient", turned_facets=n_turned, one_sided_parts=n_one_sided, rounds=1
+    )
+    return (_with_turned_facets(plc, turned) if n_turned else plc), report
+
+
+def _with_turned_facets(plc: PLC, turned: Bools) -> PLC:
     facets = [
         tuple(loop[::-1] for loop in loops) if turn else loops
         for loops, turn in zip(plc.facets, turned, strict=True)
     ]
-    made = PLC(
-        plc.points,
-        facets=facets,
-        facet_tags=plc.facet_tags,
-        edges=plc.edges,
-        edge_tags=plc.edge_tags,
-        points_kept=plc.points_kept,
-        names=plc.names,
-        regions=plc.regions,
-        holes=plc.holes,
-    )
-    n_turned = int(np.count_nonzero(turned))
-    return made, RepairReport(
-        repair="orient", turned_facets=n_turned, one_sided_parts=n_one_sided, rounds=1
-    )
+    try:
+        return PLC(
+            plc.points,
+            facets=facets,
+            facet_tags=plc.facet_tags,
+            edges=plc.edges,
+            edge_tags=plc.edge_tags,
+            points_kept=plc.points_kept,
+            names=plc.names,
+            regions=plc.regions,
+            holes=plc.holes,
+        )
+    except ValueError:  # grown from triangles that make no polygon: turn those
+        triangles = plc.triangles.copy()
+        rows = turned[plc.triangle_facets]
+        triangles[rows] = triangles[rows][:, ::-1]
+        soup = replace(Soup.of(plc), triangles=triangles)
+        return soup.complex_like(plc)
 
 
 def _stitched(plc: PLC, tolerance: float) -> tuple[PLC, RepairReport]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...base.arrays import Floats, Ints
+from ...base.arrays import AnyArray, Floats, Ints
 from ..plc import PLC
 
 
@@ -45,7 +45,7 @@ class Soup:
             np.unique(numbers[self.points_kept]),
         )
 
-    def of_parts(self, triangles: Ints, sources: Ints) -> Soup:
+    def of_parts(self, triangles: Ints, sources: AnyArray) -> Soup:
         """Return it with parts of its triangles in their place."""
         return replace(self, triangles=triangles, facets=self.facets[sources])
 

@@ -48,9 +48,13 @@ def stitched(soup: Soup, tolerance: float) -> Stitched:
     while is_split and rounds < MOST_ROUNDS:
         n_before = len(soup.triangles)
         soup = _with_split_borders(soup, tolerance)
-        is_split = len(soup.triangles) > n_before
-        n_split += len(soup.triangles) - n_before
+        n_new = len(soup.triangles) - n_before
+        n_split += n_new
+        is_split = n_new > 0
         rounds += 1
+    n_triangles = len(soup.triangles)
+    soup = without_flat(soup, 0.0)
+    n_dropped += n_triangles - len(soup.triangles)
     return Stitched(soup, n_merged, n_dropped, n_split, rounds)
 
 
@@ -59,8 +63,9 @@ def merged(soup: Soup, tolerance: float) -> Soup:
     pairs = cKDTree(soup.points).query_pairs(tolerance, output_type="ndarray")
     n = len(soup.points)
     ones = np.ones(len(pairs), np.int8)
-    _, group = connected_components(coo_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(n, n)))
-    _, first, group = np.unique(group, return_index=True, return_inverse=True)
+    near = coo_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    _, components = connected_components(near)
+    _, first, group = np.unique(components, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
     place = np.empty(len(order), np.int32)
     place[order] = np.arange(len(order), dtype=np.int32)
@@ -98,9 +103,9 @@ def _with_split_borders(soup: Soup, tolerance: float) -> Soup:
     for triangle, k, a, b in zip(corners, local, starts, ends, strict=True):
         if split[triangle]:
             continue  # its other edges come in the next round
+        apex = int(soup.triangles[triangle, (k + 2) % 3])
         between = _points_between(soup.points, a, b, border, tree, tolerance)
-        if between:
-            apex = int(soup.triangles[triangle, (k + 2) % 3])
+        if between and apex not in between:
             chain = [int(a), *between, int(b)]
             parts += [(p, q, apex) for p, q in pairwise(chain)]
             sources += [int(triangle)] * (len(chain) - 1)
