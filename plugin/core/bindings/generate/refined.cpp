@@ -127,7 +127,6 @@ nb::dict as_dict(const RefinementRecord &record) {
   out["facet_lemma"] = as_dict(record.facet_lemma);
   out["encroached"] = as_dict(record.encroached);
   out["enlarged_cavities"] = record.enlarged_cavities;
-  out["wrapped_cavities"] = record.wrapped_cavities;
   out["clusters"] = record.clusters;
   out["acute_pairs"] = record.acute_pairs;
   out["above_bound"] = record.above_bound;

@@ -42,22 +42,7 @@ CavityFlaw Cavity::gather(WalledMesh &mesh, const Site &site) {
       return flaw;
     return find_rims(mesh, site) ? CavityFlaw::no_flaw : CavityFlaw::folds_facet;
   }
-  return site.may_wrap && wrap(mesh, site) ? CavityFlaw::no_flaw
-                                           : CavityFlaw::not_star_shaped;
-}
-
-/// What the spheres say goes, seen or not.
-bool Cavity::wrap(const WalledMesh &mesh, const Site &site) {
-  start(mesh);
-  flood(mesh, site, false);
-  find_boundary(mesh, site);
-  std::vector<HalfFacet> opened;
-  for (Index c : cells_)
-    for (std::size_t i = 0; i < 4; ++i)
-      if (mesh.walls[c][i] != none && is_open(site, mesh.walls[c][i]))
-        opened.emplace_back(c, i);
-  is_wrapped_ = !is_enlarged_ && wrapped_.find(mesh, {cells_, boundary_, opened}, site);
-  return is_wrapped_;
+  return CavityFlaw::not_star_shaped;
 }
 
 void Cavity::start(const WalledMesh &mesh) {
@@ -65,7 +50,7 @@ void Cavity::start(const WalledMesh &mesh) {
   mark_.resize(mesh.cells.size(), 0);
   position_.resize(mesh.cells.size());
   cells_.clear();
-  is_enlarged_ = is_wrapped_ = false;
+  is_enlarged_ = false;
 }
 
 void Cavity::take(Index c) {
@@ -194,17 +179,6 @@ Index Cavity::fill(WalledMesh &mesh, const Site &site) {
       mesh.add_vertex(site.x, site.carrier, nearest_vertex(mesh, site.x));
   if (site.split_edge[0] != none)
     mesh.split_subsegment(site.split_edge, v);
-  if (is_wrapped_)
-    wrapped_.put(mesh, new_cells_);
-  else
-    put_star(mesh, v);
-  mesh.renew_stars(cells_, new_cells_);
-  for (Index c : cells_)
-    mesh.free_cell(c);
-  return v;
-}
-
-void Cavity::put_star(WalledMesh &mesh, Index v) {
   new_cells_.clear();
   outer_.clear();
   for (HalfFacet h : boundary_) {
@@ -232,6 +206,10 @@ void Cavity::put_star(WalledMesh &mesh, Index v) {
           mesh.neighbours[c][k] = HalfFacet(new_cells_[partner], side);
     }
   }
+  mesh.renew_stars(cells_, new_cells_);
+  for (Index c : cells_)
+    mesh.free_cell(c);
+  return v;
 }
 
 double Cavity::nearest_vertex(const WalledMesh &mesh, const Vector<3> &x) const {

@@ -8,7 +8,6 @@
 // rules take another point or refuse.
 
 #include "generate/refinement/walled_mesh.h"
-#include "generate/refinement/wrapped_cavity.h"
 
 #include <span>
 #include <vector>
@@ -31,7 +30,6 @@ struct Site {
   std::vector<Index> seeds;        ///< cells that it takes away in any case
   std::vector<Index> open_facets;  ///< the facets that it is on, sorted
   Segment split_edge{none, none};  ///< the subsegment that it is on
-  bool may_wrap = false; ///< a cavity that is not its star is tried as well
 };
 
 class Cavity {
@@ -47,7 +45,8 @@ public:
   [[nodiscard]] std::span<const Index> cells() const { return cells_; }
   /// Half-facets of these cells that stay; those that are walls and those that are not.
   [[nodiscard]] std::span<const HalfFacet> boundary() const { return boundary_; }
-  /// After fill.
+  /// After fill: the new cells, whose facets opposite their last vertex, which is the
+  /// new one, are the boundary.
   [[nodiscard]] std::span<const Index> new_cells() const { return new_cells_; }
   [[nodiscard]] bool contains(Index c) const {
     return static_cast<std::size_t>(c) < mark_.size() && mark_[c] == inside_mark();
@@ -59,8 +58,6 @@ public:
   /// Whether round-off has let cells on the two sides of a facet of the point disagree,
   /// so that one was taken that its sphere would have spared.
   [[nodiscard]] bool is_enlarged() const { return is_enlarged_; }
-  /// Whether it is filled by gift-wrapping.
-  [[nodiscard]] bool is_wrapped() const { return is_wrapped_; }
 
 private:
   /// Per edge of a boundary facet, opposite its vertex k: the facet of the boundary that
@@ -79,12 +76,9 @@ private:
   PerCell<Index> position_;     ///< in cells_
   PerVertex<std::uint32_t> on_boundary_;
   std::uint32_t round_ = 0;
-  bool is_enlarged_ = false, is_wrapped_ = false;
-  WrappedCavity wrapped_;
+  bool is_enlarged_ = false;
 
-  [[nodiscard]] bool wrap(const WalledMesh &mesh, const Site &site);
   [[nodiscard]] std::uint32_t inside_mark() const { return 2 * round_; }
-  void put_star(WalledMesh &mesh, Index v);
   void start(const WalledMesh &mesh);
   void take(Index c);
   void flood(const WalledMesh &mesh, const Site &site, bool only_visible);

@@ -93,8 +93,7 @@ struct RefinementRecord {
   std::array<std::size_t, n_refusals> refusals{};
   LemmaCheck edge_lemma;  ///< r_e >= .7 r_f
   LemmaCheck facet_lemma; ///< r_f >= .7 r_t
-  std::size_t enlarged_cavities = 0; ///< by round-off, at facets of the new point
-  std::size_t wrapped_cavities = 0;  ///< filled by gift-wrapping, no stars of their point
+  std::size_t enlarged_cavities = 0;
   std::size_t clusters = 0, acute_pairs = 0;
   Encroached encroached;
   std::size_t above_bound = 0; ///< tetrahedra with a ratio above B that are left

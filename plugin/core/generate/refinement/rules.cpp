@@ -224,7 +224,7 @@ Outcome Rules::conditionally_refine_tet(Index t) {
       return refine_encroached_facets({&walk.wall, 1}, c, cause);
     if (walk.cell == none)
       continue;
-    const Site site{c, {}, {walk.cell}, {}, {none, none}, false};
+    const Site site{c, {}, {walk.cell}, {}, {none, none}};
     if (cavity_.gather(mesh_, site) != CavityFlaw::no_flaw || !cavity_.contains(t))
       continue;
     find_encroached_edges(c);
@@ -314,8 +314,7 @@ Site Rules::edge_site(const Segment &e, double fraction) {
             {Carrier::Kind::segment, mesh_.segment_of(e[0], e[1])},
             {},
             {},
-            e,
-            true};
+            e};
   mesh_.cells_around(e[0], e[1], site.seeds);
   for (Index c : site.seeds)
     for (std::size_t i = 0; i < 4; ++i) {
@@ -331,7 +330,7 @@ Site Rules::edge_site(const Segment &e, double fraction) {
 
 Site Rules::facet_site(HalfFacet f, const Vector<3> &x) const {
   const Index facet = mesh_.wall(f);
-  Site site{x, {Carrier::Kind::facet, facet}, {f.cell()}, {facet}, {none, none}, true};
+  Site site{x, {Carrier::Kind::facet, facet}, {f.cell()}, {facet}, {none, none}};
   if (const HalfFacet other = mesh_.opposite(f); other.exists())
     site.seeds.push_back(other.cell());
   return site;
@@ -372,7 +371,6 @@ Outcome Rules::insert_best(const BestPick &best, const Cause &cause, Refusal oth
 Outcome Rules::insert(const Site &site) {
   find_encroached_edges(site.x);
   record_.enlarged_cavities += cavity_.is_enlarged();
-  record_.wrapped_cavities += cavity_.is_wrapped();
   const Index near = mesh_.cells[cavity_.cells().front()][0];
   const Index v = cavity_.fill(mesh_, site);
   size_.add_vertex(site.x, near);
