@@ -7,7 +7,7 @@ namespace {
 
 /// Where the centre itself has no cavity that its star fills, points near to it are tried.
 constexpr PickRule centre_first{.delta = .05, .n_picks = 6, .must_avoid_slivers = false};
-constexpr int most_tries_of_edge = 20;
+constexpr int most_tries_of_edge = 5;
 /// As a fraction of the points, inverted.
 constexpr std::size_t growth_before_retry = 50;
 
