@@ -248,6 +248,8 @@ std::optional<Refusal> Rules::acute_refusal(Index t, const CellShape &shape) con
   };
   if (join(shape.shortest_edge[0], shape.shortest_edge[1]))
     return Refusal::acute_shortest_edge;
+  if (shape.ratio() <= settings_.bound)
+    return {}; // a sliver, which is refined only where that helps
   const Cell<3> &cell = mesh_.cells[t];
   if (!std::all_of(cell.begin(), cell.end(),
                    [&](Index v) { return mesh_.carriers[v].is_on_facet(); }))
