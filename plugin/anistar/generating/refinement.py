@@ -147,8 +147,9 @@ class RefinedTetrahedra:
         What the rules did. ``refinement`` and ``sliver_elimination``: points inserted on edges,
         in facets and in tetrahedra; ``refusals``: how often which refusal left something as it
         was; ``edge_lemma`` and ``facet_lemma``: how many ratios r_v / r_p of rejected parents were
-        ``checked``, how many ``violated`` the lemma, the ``least``; ``encroached``: what stays so,
-        and why; ``above_bound``, ``slivers``: tetrahedra left; ``largest_ratio``,
+        ``checked``, how many ``violated`` the lemma (v is refused then), the ``least``;
+        ``encroached``: what stays so, and why; ``reduced_cavities``, ``not_delaunay``: points on
+        edges that left hidden cells, and facets that are not locally Delaunay in the end; ``above_bound``, ``slivers``: tetrahedra left; ``largest_ratio``,
         ``least_dihedral`` (degrees); ``l_1``, ``l_2``: shortest edge before the elimination of
         slivers, and the floor of that; seconds.
     steiner_ends, steiner_shares : arrays

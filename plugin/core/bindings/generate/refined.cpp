@@ -127,6 +127,8 @@ nb::dict as_dict(const RefinementRecord &record) {
   out["facet_lemma"] = as_dict(record.facet_lemma);
   out["encroached"] = as_dict(record.encroached);
   out["enlarged_cavities"] = record.enlarged_cavities;
+  out["reduced_cavities"] = record.reduced_cavities;
+  out["not_delaunay"] = record.not_delaunay;
   out["clusters"] = record.clusters;
   out["acute_pairs"] = record.acute_pairs;
   out["above_bound"] = record.above_bound;
@@ -193,9 +195,9 @@ void bind_refined(nb::module_ &module) {
          const Array1<Index> &wall_facets, const Array2<Index> &edges,
          const Array1<Index> &edge_segments, const Array1<double> &sizes,
          const RefinementSettings &settings, const nb::object &callback) {
-        return as_dict(refined_of({points, cells, cell_regions, walls, wall_facets,
-                                   edges, edge_segments},
-                                  sizes, settings, callback));
+        return as_dict(refined_of(
+            {points, cells, cell_regions, walls, wall_facets, edges, edge_segments},
+            sizes, settings, callback));
       },
       nb::kw_only(), nb::arg("points").noconvert(), nb::arg("cells").noconvert(),
       nb::arg("cell_regions").noconvert(), nb::arg("walls").noconvert(),

@@ -40,9 +40,72 @@ CavityFlaw Cavity::gather(WalledMesh &mesh, const Site &site) {
       continue;
     if (const CavityFlaw flaw = what_is_buried(mesh, site); flaw != CavityFlaw::no_flaw)
       return flaw;
-    return find_rims(mesh, site) ? CavityFlaw::no_flaw : CavityFlaw::folds_facet;
+    return find_rims(mesh) ? CavityFlaw::no_flaw : CavityFlaw::folds_facet;
   }
-  return CavityFlaw::not_star_shaped;
+  if (!site.may_leave_hidden || !leave_hidden(mesh, site))
+    return CavityFlaw::not_star_shaped;
+  if (const CavityFlaw flaw = what_is_buried(mesh, site); flaw != CavityFlaw::no_flaw)
+    return flaw;
+  return find_rims(mesh) ? CavityFlaw::no_flaw : CavityFlaw::folds_facet;
+}
+
+/// Leaves cells of which the point sees no whole facet, all but those at its own
+/// facets: what is open of these stays open.
+bool Cavity::leave_hidden(const WalledMesh &mesh, const Site &site) {
+  start(mesh);
+  flood(mesh, site, false);
+  const std::size_t n_open = n_open_walls(mesh, site), most = cells_.size();
+  for (std::size_t k = 0; k < most; ++k) {
+    find_boundary(mesh, site);
+    std::size_t n_left = 0;
+    for (HalfFacet h : boundary_)
+      if (contains(h.cell()) && !has_volume<3>(cell_with(mesh, h, site.x))) {
+        mark_[h.cell()] = inside_mark() + 1;
+        ++n_left;
+      }
+    if (n_left == 0) {
+      is_reduced_ = true;
+      return n_open_walls(mesh, site) == n_open;
+    }
+    if (std::any_of(site.seeds.begin(), site.seeds.end(),
+                    [&](Index c) { return !contains(c); }))
+      return false;
+    keep_connected(mesh, site);
+  }
+  return false;
+}
+
+std::size_t Cavity::n_open_walls(const WalledMesh &mesh, const Site &site) const {
+  std::size_t n = 0;
+  for (Index c : cells_)
+    for (Index wall : mesh.walls[c])
+      n += wall != none && is_open(site, wall);
+  return n;
+}
+
+/// Of the cells that are marked those that are connected with the seeds.
+void Cavity::keep_connected(const WalledMesh &mesh, const Site &site) {
+  std::vector<Index> marked;
+  std::swap(marked, cells_);
+  std::vector<Index> kept;
+  for (Index c : marked)
+    if (contains(c))
+      kept.push_back(c);
+  for (Index c : kept)
+    mark_[c] = inside_mark() + 1;
+  std::sort(kept.begin(), kept.end());
+  for (Index c : site.seeds)
+    if (!contains(c))
+      take(c);
+  for (std::size_t k = 0; k < cells_.size(); ++k)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const HalfFacet h(cells_[k], i), other = mesh.opposite(h);
+      const Index wall = mesh.wall(h);
+      if (other.exists() && !contains(other.cell()) &&
+          (wall == none || is_open(site, wall)) &&
+          std::binary_search(kept.begin(), kept.end(), other.cell()))
+        take(other.cell());
+    }
 }
 
 void Cavity::start(const WalledMesh &mesh) {
@@ -50,7 +113,7 @@ void Cavity::start(const WalledMesh &mesh) {
   mark_.resize(mesh.cells.size(), 0);
   position_.resize(mesh.cells.size());
   cells_.clear();
-  is_enlarged_ = false;
+  is_enlarged_ = is_reduced_ = false;
 }
 
 void Cavity::take(Index c) {
@@ -136,7 +199,7 @@ bool Cavity::is_on_boundary(const Segment &edge, const WalledMesh &mesh) const {
   });
 }
 
-bool Cavity::find_rims(const WalledMesh &mesh, const Site &site) {
+bool Cavity::find_rims(const WalledMesh &mesh) {
   rims_.assign(boundary_.size(), Rim());
   for (std::size_t b = 0; b < boundary_.size(); ++b) {
     const Facet<3> f = mesh.facet(boundary_[b]);
@@ -170,13 +233,11 @@ bool Cavity::find_rims(const WalledMesh &mesh, const Site &site) {
         return false;
     }
   }
-  (void)site;
   return true;
 }
 
 Index Cavity::fill(WalledMesh &mesh, const Site &site) {
-  const Index v =
-      mesh.add_vertex(site.x, site.carrier, nearest_vertex(mesh, site.x));
+  const Index v = mesh.add_vertex(site.x, site.carrier, nearest_vertex(mesh, site.x));
   if (site.split_edge[0] != none)
     mesh.split_subsegment(site.split_edge, v);
   new_cells_.clear();

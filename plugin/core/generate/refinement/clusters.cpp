@@ -30,9 +30,8 @@ std::vector<Ray> rays_of(const WalledMesh &mesh) {
         rays.push_back(
             {edge[k], segment,
              (mesh.points[edge[1 - k]] - mesh.points[edge[k]]).normalized()});
-  std::stable_sort(rays.begin(), rays.end(), [](const Ray &a, const Ray &b) {
-    return a.vertex < b.vertex;
-  });
+  std::stable_sort(rays.begin(), rays.end(),
+                   [](const Ray &a, const Ray &b) { return a.vertex < b.vertex; });
   return rays;
 }
 

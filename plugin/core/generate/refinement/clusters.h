@@ -1,7 +1,7 @@
 #pragma once
-// Clusters of segments (Terminator 3D, rule 1): those that leave a vertex at angles below
-// 60 degrees are split on spheres around it, of radii 2^k, so that no new point of one
-// encroaches upon a piece of another.
+// Clusters of segments (Terminator 3D, rule 1): those that leave a vertex at angles
+// below 60 degrees are split on spheres around it, of radii 2^k, so that no new point
+// of one encroaches upon a piece of another.
 
 #include "generate/refinement/walled_mesh.h"
 
@@ -25,8 +25,8 @@ public:
 
 private:
   static constexpr double no_cluster = std::numeric_limits<double>::infinity();
-  /// Of an end of a segment: the least distance of two points of its cluster on the unit
-  /// sphere.
+  /// Of an end of a segment: the least distance of two points of its cluster on the
+  /// unit sphere.
   struct End {
     Index vertex = none;
     double gap = no_cluster;

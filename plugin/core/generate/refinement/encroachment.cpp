@@ -9,9 +9,10 @@ namespace anistar::generate {
 namespace {
 
 // How much longer than h something may be. A regular tetrahedron with edges h has a
-// circumradius of .61 h, its facets one of .58 h; with these the mean edge comes near to
-// h (measured; studies/generator.md).
-constexpr double longest_edge = 1.33, largest_facet_radius = .8, largest_cell_radius = .85;
+// circumradius of .61 h, its facets one of .58 h; with these the mean edge comes near
+// to h (measured; studies/generator.md).
+constexpr double longest_edge = 1.33, largest_facet_radius = .8,
+                 largest_cell_radius = .85;
 
 } // namespace
 
@@ -73,8 +74,7 @@ bool Rules::is_large(HalfFacet f) const {
   if (!size_.is_given())
     return false;
   const Ball ball = diametral_ball_of(f);
-  return ball.radius >
-         largest_facet_radius * size_.at(ball.centre, mesh_.facet(f)[0]);
+  return ball.radius > largest_facet_radius * size_.at(ball.centre, mesh_.facet(f)[0]);
 }
 
 Rules::CellShape Rules::shape_of(Index t) const {

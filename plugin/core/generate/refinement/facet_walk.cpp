@@ -30,8 +30,10 @@ FacetWalk walk_in_facet(const WalledMesh &mesh, const PlcFaces &faces, HalfFacet
   const Index facet = mesh.wall(start);
   const Projection flat = faces.projection(facet);
   const Facet<3> first = mesh.facet(start);
-  const Vector<2> target = flat(x), origin = flat((mesh.points[first[0]] + mesh.points[first[1]] +
-                                                   mesh.points[first[2]]) / 3);
+  const Vector<2> target = flat(x),
+                  origin = flat((mesh.points[first[0]] + mesh.points[first[1]] +
+                                 mesh.points[first[2]]) /
+                                3);
   FacetWalk walk{.wall = start};
   for (std::size_t step = 0; step < most_steps; ++step) {
     const Facet<3> f = mesh.facet(walk.wall);

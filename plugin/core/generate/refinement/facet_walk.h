@@ -1,7 +1,7 @@
 #pragma once
-// Walks through the two-dimensional mesh of a facet, which its walls are, and through the
-// cells between walls. What a walk finds is a place to try: whether a point may be put
-// there the exact predicates of its cavity decide.
+// Walks through the two-dimensional mesh of a facet, which its walls are, and through
+// the cells between walls. What a walk finds is a place to try: whether a point may be
+// put there the exact predicates of its cavity decide.
 
 #include "generate/refinement/walled_mesh.h"
 
@@ -9,15 +9,15 @@ namespace anistar::generate {
 
 /// Where a walk in a facet has come to.
 struct FacetWalk {
-  HalfFacet wall;           ///< that holds the target, or the last one before the border
+  HalfFacet wall; ///< that holds the target, or the last one before the border
   Segment border{none, none}; ///< the subsegment in the way, if there is one
-  bool is_lost = false;     ///< flat walls, or no end
+  bool is_lost = false;       ///< flat walls, or no end
 
   [[nodiscard]] bool has_arrived() const { return !is_lost && border[0] == none; }
 };
 
-/// Walks from a wall straight to x, on the facet of that wall, seen along the coordinate
-/// that its projection leaves out.
+/// Walks from a wall straight to x, on the facet of that wall, seen along the
+/// coordinate that its projection leaves out.
 [[nodiscard]] FacetWalk walk_in_facet(const WalledMesh &mesh, const PlcFaces &faces,
                                       HalfFacet start, const Vector<3> &x);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Points of a refinement region (c, delta r): a ball of the dimension of what is refined.
+// Points of a refinement region (c, delta r): a ball of the dimension of what is
+// refined.
 
 #include "base/random.h"
 #include "base/tensor.h"

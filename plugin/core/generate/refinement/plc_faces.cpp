@@ -146,7 +146,8 @@ bool PlcFaces::are_disjoint(const Carrier &carrier, Index facet) const {
   case Carrier::Kind::vertex:
     return !on_facet(carrier.face);
   case Carrier::Kind::segment:
-    return std::none_of(ends_[carrier.face].begin(), ends_[carrier.face].end(), on_facet);
+    return std::none_of(ends_[carrier.face].begin(), ends_[carrier.face].end(),
+                        on_facet);
   case Carrier::Kind::facet: {
     const auto vertices = facet_vertices_[carrier.face];
     return std::none_of(vertices.begin(), vertices.end(), on_facet);
@@ -173,9 +174,8 @@ bool PlcFaces::join_acute_facets(const Carrier &one, const Carrier &other) const
     if (acute_[facet].empty() || is_on(other, facet))
       return false;
     const auto others = facets_of(other);
-    return std::any_of(others.begin(), others.end(), [&](Index g) {
-      return are_acute(facet, g) && !is_on(one, g);
-    });
+    return std::any_of(others.begin(), others.end(),
+                       [&](Index g) { return are_acute(facet, g) && !is_on(one, g); });
   });
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // The faces of the complex and how they meet: which are disjoint, which pairs of facets
-// form an acute dihedral angle. All of it is combinatorial: a point is on a facet because
-// it was put there, not because its coordinates say so.
+// form an acute dihedral angle. All of it is combinatorial: a point is on a facet
+// because it was put there, not because its coordinates say so.
 
 #include "generate/tetrahedralisation.h"
 #include "mesh/adjacency.h"

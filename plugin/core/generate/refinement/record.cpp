@@ -80,6 +80,13 @@ void Rules::finish_record() {
         largest_dihedral_cosine(mesh_.simplex(static_cast<Index>(c)));
     record_.slivers += of_cell > sliver_cosine;
     cosine = std::max(cosine, of_cell);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const HalfFacet h(static_cast<Index>(c), i), other = mesh_.opposite(h);
+      record_.not_delaunay +=
+          other.exists() && h < other && mesh_.wall(h) == none &&
+          in_sphere(mesh_.simplex(h.cell()), mesh_.points[mesh_.apex(other)]) ==
+              Side::inside;
+    }
   }
   const double sine = std::sqrt(std::max(0., 1 - cosine * cosine));
   record_.least_dihedral = elementary::angle_of(sine, cosine) / degree;

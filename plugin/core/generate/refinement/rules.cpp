@@ -5,9 +5,11 @@
 namespace anistar::generate {
 namespace {
 
-/// Where the centre itself has no cavity that its star fills, points near to it are tried.
-constexpr PickRule centre_first{.delta = .05, .n_picks = 6, .must_avoid_slivers = false};
-constexpr int most_tries_of_edge = 20;
+/// Where the centre itself has no cavity that its star fills, points near to it are
+/// tried.
+constexpr PickRule centre_first{
+    .delta = .05, .n_picks = 6, .must_avoid_slivers = false};
+constexpr int most_tries_of_edge = 5;
 /// As a fraction of the points, inverted.
 constexpr std::size_t growth_before_retry = 50;
 
@@ -58,14 +60,15 @@ bool Rules::apply_rule_1() {
   const Segment &e = waiting->edge;
   if (!exists(e) || !(is_encroached(e) || is_long(e)))
     return true;
-  if (refine_edge(e, {.r_g = 0}) == Outcome::refused && waiting->tries < most_tries_of_edge)
+  if (refine_edge(e, {.r_g = 0}) == Outcome::refused &&
+      waiting->tries < most_tries_of_edge)
     put_off_.push_back({e, waiting->tries + 1});
   return true;
 }
 
 /// Where the point of one edge encroaches upon another, as with long ones side by side,
-/// neither may have a cavity that its star fills before the other, or one further on, is
-/// split. So those that failed are tried again when others have been.
+/// neither may have a cavity that its star fills before the other, or one further on,
+/// is split. So those that failed are tried again when others have been.
 bool Rules::try_put_off_edges() {
   if (put_off_.empty() || insertions_->edges == edges_at_last_try_)
     return false;
@@ -94,7 +97,8 @@ bool Rules::apply_rule_2() {
   if (p != none) {
     const Carrier &carrier = mesh_.carriers[p];
     cause.r_g = mesh_.insertion_radius[p];
-    cause.frees_facet = !carrier.is_on_facet() || carrier.kind == Carrier::Kind::vertex ||
+    cause.frees_facet = !carrier.is_on_facet() ||
+                        carrier.kind == Carrier::Kind::vertex ||
                         faces_.are_disjoint(carrier, mesh_.wall(f));
   }
   if (conditionally_refine_facet(f, cause) == Outcome::elsewhere &&
@@ -154,8 +158,8 @@ bool Rules::is_blocked(const Segment &e) const {
          mesh_.points.size() < found->second + found->second / growth_before_retry;
 }
 
-/// conditionally-refine-facet(f): c = circumcenter(f); if c encroaches a constrained edge
-/// e, refine-edge(e); else insert(c), under Terminator's rule 2.
+/// conditionally-refine-facet(f): c = circumcenter(f); if c encroaches a constrained
+/// edge e, refine-edge(e); else insert(c), under Terminator's rule 2.
 Outcome Rules::conditionally_refine_facet(HalfFacet f, const Cause &cause) {
   const Ball ball = diametral_ball_of(f);
   const double r_f = ball.radius;
@@ -224,7 +228,7 @@ Outcome Rules::conditionally_refine_tet(Index t) {
       return refine_encroached_facets({&walk.wall, 1}, c, cause);
     if (walk.cell == none)
       continue;
-    const Site site{c, {}, {walk.cell}, {}, {none, none}};
+    const Site site{c, {}, {walk.cell}, {}, {none, none}, false};
     if (cavity_.gather(mesh_, site) != CavityFlaw::no_flaw || !cavity_.contains(t))
       continue;
     find_encroached_edges(c);
@@ -248,6 +252,8 @@ std::optional<Refusal> Rules::acute_refusal(Index t, const CellShape &shape) con
   };
   if (join(shape.shortest_edge[0], shape.shortest_edge[1]))
     return Refusal::acute_shortest_edge;
+  if (shape.ratio() <= settings_.bound)
+    return {}; // a sliver, which is refined only where that helps
   const Cell<3> &cell = mesh_.cells[t];
   if (!std::all_of(cell.begin(), cell.end(),
                    [&](Index v) { return mesh_.carriers[v].is_on_facet(); }))
@@ -305,7 +311,8 @@ HalfFacet Rules::facet_below(HalfFacet f, const Vector<3> &p) const {
   const Vector<3> n = (mesh_.points[v[1]] - a).cross(mesh_.points[v[2]] - a);
   const Vector<3> projection = p - n * (n.dot(p - a) / n.squaredNorm());
   const FacetWalk walk = walk_in_facet(mesh_, faces_, f, projection);
-  return walk.has_arrived() && encroaches(p, diametral_ball_of(walk.wall)) ? walk.wall : f;
+  return walk.has_arrived() && encroaches(p, diametral_ball_of(walk.wall)) ? walk.wall
+                                                                           : f;
 }
 
 Site Rules::edge_site(const Segment &e, double fraction) {
@@ -314,7 +321,8 @@ Site Rules::edge_site(const Segment &e, double fraction) {
             {Carrier::Kind::segment, mesh_.segment_of(e[0], e[1])},
             {},
             {},
-            e};
+            e,
+            true};
   mesh_.cells_around(e[0], e[1], site.seeds);
   for (Index c : site.seeds)
     for (std::size_t i = 0; i < 4; ++i) {
@@ -330,7 +338,7 @@ Site Rules::edge_site(const Segment &e, double fraction) {
 
 Site Rules::facet_site(HalfFacet f, const Vector<3> &x) const {
   const Index facet = mesh_.wall(f);
-  Site site{x, {Carrier::Kind::facet, facet}, {f.cell()}, {facet}, {none, none}};
+  Site site{x, {Carrier::Kind::facet, facet}, {f.cell()}, {facet}, {none, none}, false};
   if (const HalfFacet other = mesh_.opposite(f); other.exists())
     site.seeds.push_back(other.cell());
   return site;
@@ -354,9 +362,10 @@ bool Rules::takes(const Site &site, double r_tau, BestPick &best) {
   return false;
 }
 
-/// Where no pick avoids slivers, the least bad one: a rule that asks for a point gets it,
-/// a sliver only if the angles become better.
-Outcome Rules::insert_best(const BestPick &best, const Cause &cause, Refusal otherwise) {
+/// Where no pick avoids slivers, the least bad one: a rule that asks for a point gets
+/// it, a sliver only if the angles become better.
+Outcome Rules::insert_best(const BestPick &best, const Cause &cause,
+                           Refusal otherwise) {
   if (!best.site)
     return refuse(otherwise);
   if (cavity_.gather(mesh_, *best.site) != CavityFlaw::no_flaw)
@@ -371,6 +380,7 @@ Outcome Rules::insert_best(const BestPick &best, const Cause &cause, Refusal oth
 Outcome Rules::insert(const Site &site) {
   find_encroached_edges(site.x);
   record_.enlarged_cavities += cavity_.is_enlarged();
+  record_.reduced_cavities += cavity_.is_reduced();
   const Index near = mesh_.cells[cavity_.cells().front()][0];
   const Index v = cavity_.fill(mesh_, site);
   size_.add_vertex(site.x, near);

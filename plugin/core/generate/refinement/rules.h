@@ -1,7 +1,7 @@
 #pragma once
 // The rules of the slides, by their names: refine-edge, conditionally-refine-facet and
-// conditionally-refine-tet, with the rules that Terminator 3D adds at small angles and, in
-// the second phase, picks that avoid small slivers.
+// conditionally-refine-tet, with the rules that Terminator 3D adds at small angles and,
+// in the second phase, picks that avoid small slivers.
 
 #include "generate/refinement/cavity.h"
 #include "generate/refinement/clusters.h"
@@ -27,10 +27,13 @@ enum class Outcome {
 
 /// Why a point v is wanted: what Terminator's rules ask about its ancestors.
 struct Cause {
-  double r_g;            ///< insertion radius of the most recently inserted ancestor
-  double r_rejected = 0; ///< that of the rejected point p that is the parent; 0: a vertex
-  bool needs_no_longer = false; ///< a size is wanted or a sliver must go: no test by r_g
-  bool frees_facet = false; ///< p is a vertex of the complex or on a face disjoint from F
+  double r_g; ///< insertion radius of the most recently inserted ancestor
+  double r_rejected =
+      0; ///< that of the rejected point p that is the parent; 0: a vertex
+  bool needs_no_longer =
+      false; ///< a size is wanted or a sliver must go: no test by r_g
+  bool frees_facet =
+      false; ///< p is a vertex of the complex or on a face disjoint from F
   bool must_improve = false; ///< a sliver: only for better dihedral angles
 };
 
@@ -119,8 +122,8 @@ private:
   [[nodiscard]] Site edge_site(const Segment &e, double fraction);
   [[nodiscard]] Site facet_site(HalfFacet f, const Vector<3> &x) const;
   Outcome refine_encroached_edges(const Cause &cause);
-  Outcome refine_encroached_facets(std::span<const HalfFacet> facets, const Vector<3> &p,
-                                   const Cause &cause);
+  Outcome refine_encroached_facets(std::span<const HalfFacet> facets,
+                                   const Vector<3> &p, const Cause &cause);
   [[nodiscard]] HalfFacet facet_below(HalfFacet f, const Vector<3> &p) const;
   [[nodiscard]] std::optional<Refusal> acute_refusal(Index t,
                                                      const CellShape &shape) const;

@@ -25,14 +25,17 @@ namespace anistar::generate {
   const double abc = az * bc - bz * ac + cz * ab, bce = bz * ce - cz * be + ez * bc;
   const double cea = cz * ea + ez * ac + az * ce, eab = ez * ab + az * be + bz * ea;
   const double det = (c2 * eab - e2 * abc) + (a2 * bce - b2 * cea);
-  const double Az = std::abs(az), Bz = std::abs(bz), Cz = std::abs(cz), Ez = std::abs(ez);
-  const double AB = std::abs(axby) + std::abs(bxay), BC = std::abs(bxcy) + std::abs(cxby);
-  const double CE = std::abs(cxey) + std::abs(excy), EA = std::abs(exay) + std::abs(axey);
-  const double AC = std::abs(axcy) + std::abs(cxay), BE = std::abs(bxey) + std::abs(exby);
-  const double size = (CE * Bz + BE * Cz + BC * Ez) * a2 +
-                      (EA * Cz + AC * Ez + CE * Az) * b2 +
-                      (AB * Ez + BE * Az + EA * Bz) * c2 +
-                      (BC * Az + AC * Bz + AB * Cz) * e2;
+  const double Az = std::abs(az), Bz = std::abs(bz), Cz = std::abs(cz),
+               Ez = std::abs(ez);
+  const double AB = std::abs(axby) + std::abs(bxay),
+               BC = std::abs(bxcy) + std::abs(cxby);
+  const double CE = std::abs(cxey) + std::abs(excy),
+               EA = std::abs(exay) + std::abs(axey);
+  const double AC = std::abs(axcy) + std::abs(cxay),
+               BE = std::abs(bxey) + std::abs(exby);
+  const double size =
+      (CE * Bz + BE * Cz + BC * Ez) * a2 + (EA * Cz + AC * Ez + CE * Az) * b2 +
+      (AB * Ez + BE * Az + EA * Bz) * c2 + (BC * Az + AC * Bz + AB * Cz) * e2;
   if (size > detail::underflow_guard) {
     const double bound = detail::sphere_bound_3 * size;
     if (det > bound)
@@ -59,8 +62,8 @@ inline constexpr double on_sphere = 1e-10;
   return {.5 * (a + b), .5 * (b - a).norm()};
 }
 
-/// The smallest ball whose sphere goes through the vertices of a triangle; infinite for a
-/// flat one.
+/// The smallest ball whose sphere goes through the vertices of a triangle; infinite for
+/// a flat one.
 [[nodiscard]] inline Ball diametral_ball(const Vector<3> &a, const Vector<3> &b,
                                          const Vector<3> &c) {
   const Vector<3> u = b - a, v = c - a, n = u.cross(v);
@@ -85,10 +88,10 @@ inline constexpr double on_sphere = 1e-10;
   return {s[0] + offset, offset.norm()};
 }
 
-/// Whether p is inside of the diametral ball, that is encroaches upon what it belongs to.
+/// Whether p is inside of the diametral ball, that is encroaches upon what it belongs
+/// to.
 [[nodiscard]] inline bool encroaches(const Vector<3> &p, const Ball &ball) {
-  return (p - ball.centre).squaredNorm() <
-         ball.radius * ball.radius * (1 - on_sphere);
+  return (p - ball.centre).squaredNorm() < ball.radius * ball.radius * (1 - on_sphere);
 }
 
 /// The same for a segment, by the angle at p.

@@ -186,9 +186,8 @@ std::vector<WalledMesh::InitialEdge> WalledMesh::sorted_subsegments() const {
     out.push_back(
         {{static_cast<Index>(edge >> 32), static_cast<Index>(edge & 0xffffffffu)},
          segment});
-  std::sort(out.begin(), out.end(), [](const InitialEdge &a, const InitialEdge &b) {
-    return a.edge < b.edge;
-  });
+  std::sort(out.begin(), out.end(),
+            [](const InitialEdge &a, const InitialEdge &b) { return a.edge < b.edge; });
   return out;
 }
 
@@ -224,7 +223,8 @@ void WalledMesh::cells_around(Index a, Index b, std::vector<Index> &out) {
   std::erase_if(out, [&](Index c) { return !has_vertex(c, b); });
 }
 
-Index WalledMesh::add_vertex(const Vector<3> &x, const Carrier &carrier, double radius) {
+Index WalledMesh::add_vertex(const Vector<3> &x, const Carrier &carrier,
+                             double radius) {
   points.push_back(x);
   carriers.push_back(carrier);
   insertion_radius.push_back(radius);

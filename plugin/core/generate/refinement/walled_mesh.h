@@ -1,9 +1,10 @@
 #pragma once
 // The mesh that is being refined: tetrahedra of the inside alone, with walls.
 //
-// A wall is a facet of the mesh that is part of a facet of the complex (a subfacet of the
-// slides), a subsegment an edge that is part of one of its segments. Walls belong to the
-// cells at them and subsegments to a table, so that nothing else has to follow a change.
+// A wall is a facet of the mesh that is part of a facet of the complex (a subfacet of
+// the slides), a subsegment an edge that is part of one of its segments. Walls belong
+// to the cells at them and subsegments to a table, so that nothing else has to follow a
+// change.
 
 #include "base/predicates.h"
 #include "generate/refinement/plc_faces.h"
@@ -52,7 +53,9 @@ struct WalledMesh {
   }
   [[nodiscard]] Index apex(HalfFacet h) const { return cells[h.cell()][h.facet()]; }
   [[nodiscard]] bool is_alive(Index c) const { return cells[c][0] != none; }
-  [[nodiscard]] std::size_t n_cells() const { return cells.size() - free_cells_.size(); }
+  [[nodiscard]] std::size_t n_cells() const {
+    return cells.size() - free_cells_.size();
+  }
   [[nodiscard]] Simplex<3> simplex(Index c) const {
     const Cell<3> &v = cells[c];
     return {points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
@@ -97,7 +100,8 @@ struct WalledMesh {
   /// The cells of a vertex, in all cones.
   void star_of(Index v, std::vector<Index> &out);
 
-  [[nodiscard]] Index add_vertex(const Vector<3> &x, const Carrier &carrier, double radius);
+  [[nodiscard]] Index add_vertex(const Vector<3> &x, const Carrier &carrier,
+                                 double radius);
   /// A cell that is joined to nothing yet.
   [[nodiscard]] Index add_cell(const Cell<3> &vertices, Index cell_region);
   void free_cell(Index c);
