@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 
-
 from anistar.base.arrays import Floats
 from anistar.generating.plc import PLC
 

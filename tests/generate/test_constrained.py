@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from generate import plcs
+from generate.exact_checks import not_locally_delaunay, violations, volume
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -13,8 +15,6 @@ from anistar.generating.first_mesh import FirstMesh
 from anistar.generating.options import GenerateOptions
 from anistar.generating.plc import PLC
 from anistar.generating.region import Region
-from generate import plcs
-from generate.exact_checks import not_locally_delaunay, violations, volume
 
 HARD = {
     "cube": plcs.cube(),

@@ -1,4 +1,4 @@
-"""The constrained Delaunay mesh of a complex: tetrahedra that conform to its facets and segments."""
+"""The constrained Delaunay mesh of a complex: its facets and segments are in the tetrahedra."""
 
 from __future__ import annotations
 
