@@ -192,6 +192,7 @@ std::vector<Index> FacetRecovery::collect_cavity(Index crossed) {
         continue;
       if (mesh_.wall(h) != none)
         refuse_crossing(h);
+      refuse_crossing_edges(h);
       if (mesh_.is_ghost(next))
         give_up("leaves the convex hull");
       in_cavity_.visit(next);
@@ -230,15 +231,39 @@ std::array<HalfCavity, 2> FacetRecovery::halves(const std::vector<Index> &cavity
   return {above, below};
 }
 
-void FacetRecovery::refuse_crossing(HalfFacet h) const {
+/// An edge that is required and has its ends on both sides passes through the facet.
+void FacetRecovery::refuse_crossing_edges(HalfFacet h) {
   const Facet<3> facet = mesh_.facet(h);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Index from = facet[i], to = facet[(i + 1) % 3];
+    if (side_.is_on(from) || side_.is_on(to) || side_(from) == side_(to))
+      continue;
+    const Index edge = facets_.find(from, to);
+    if (edge == none || !facets_.is_required(edge))
+      continue;
+    const auto sides = facets_.sides(edge);
+    const Line &line = facets_.lines()[facets_.edges()[edge].line];
+    refuse(sides.empty() ? "the edge from point " + std::to_string(line.from) +
+                               " to point " + std::to_string(line.to)
+                         : name_of(facets_.triangles()[sides.front().triangle].facet),
+           (points_.rounded(from) + points_.rounded(to)) / 2);
+  }
+}
+
+void FacetRecovery::refuse_crossing(HalfFacet h) const {
   Vector<3> middle = Vector<3>::Zero();
-  for (const Index v : facet)
+  for (const Index v : mesh_.facet(h))
     middle += points_.rounded(v) / 3;
-  const auto facet_of = facets_.facets_of_planes();
-  throw MeshingError("facet " + std::to_string(facet_of[plane_]) + " crosses facet " +
-                         std::to_string(facet_of[mesh_.wall(h)]),
-                     middle);
+  refuse(name_of(facets_.facets_of_planes()[mesh_.wall(h)]), middle);
+}
+
+void FacetRecovery::refuse(const std::string &other, const Vector<3> &place) const {
+  throw MeshingError(name_of(facets_.facets_of_planes()[plane_]) + " crosses " + other,
+                     place);
+}
+
+std::string FacetRecovery::name_of(Index facet) {
+  return "facet " + std::to_string(facet);
 }
 
 void FacetRecovery::give_up(const std::string &why) const {

@@ -8,6 +8,7 @@
 #include "generate/constrained/ghost_mesh.h"
 #include "generate/constrained/gift_wrapping.h"
 
+#include <string>
 #include <vector>
 
 namespace anistar::generate {
@@ -60,7 +61,10 @@ private:
   [[nodiscard]] std::vector<Index> collect_cavity(Index crossed);
   [[nodiscard]] std::array<HalfCavity, 2> halves(const std::vector<Index> &cavity);
   [[nodiscard]] bool is_crossed(HalfFacet h);
+  void refuse_crossing_edges(HalfFacet h);
   [[noreturn]] void refuse_crossing(HalfFacet h) const;
+  [[noreturn]] void refuse(const std::string &other, const Vector<3> &place) const;
+  [[nodiscard]] static std::string name_of(Index facet);
   [[noreturn]] void give_up(const std::string &why) const;
 };
 

@@ -16,6 +16,8 @@ constexpr double flat = 1e-9;
 constexpr double flat_on_facet = 1e-2;
 /// A swap is worth it if the worst cell becomes better by so much, and above the least.
 constexpr double least_gain = 10, least_swapped = 1e-8;
+/// A swap that makes no cell flatter than that may be made for the sake of another.
+constexpr double harmless = 1e-4;
 constexpr int most_passes = 4;
 
 } // namespace
@@ -42,7 +44,7 @@ FlatCells::Counts FlatCells::remove(bool may_peel, Monitor &monitor) {
     bool is_new = false;
     for (const Index c : flat_cells(flat))
       if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < flat)
-        is_new |= swap(c) || (may_peel && peel_and_swap(c));
+        is_new |= swap(c) || (may_peel && peel_and_swap(c)) || swap_after_another(c);
     if (!is_new)
       break;
   }
@@ -121,8 +123,10 @@ bool FlatCells::peel_and_swap(Index c) {
   pass_walls(*peel);
   const Cell<3> cell = mesh_.cell(c);
   const auto better = swaps_.without_edge(cell[peel->k], cell[peel->l]);
-  if (better && is_worth(*better) && make(*better)) {
+  if (better && is_worth(*better)) {
+    make(*better);
     ++counts_.peeled;
+    ++counts_.swapped;
     return true;
   }
   pass_walls({c, peel->k, peel->l, peel->i, peel->j});
@@ -130,21 +134,76 @@ bool FlatCells::peel_and_swap(Index c) {
   return false;
 }
 
-bool FlatCells::swap(Index c) {
+std::vector<Swap> FlatCells::swaps_at(Index c) {
   const Cell<3> cell = mesh_.cell(c);
-  std::optional<Swap> best;
-  const auto offer = [&](std::optional<Swap> candidate) {
-    if (candidate && is_worth(*candidate) &&
-        (!best || candidate->least_after > best->least_after))
-      best = std::move(candidate);
+  std::vector<Swap> found;
+  const auto note = [&](std::optional<Swap> candidate) {
+    if (candidate)
+      found.push_back(std::move(*candidate));
   };
   for (std::size_t i = 0; i < 4; ++i) {
-    offer(swaps_.without_facet({c, i}));
+    note(swaps_.without_facet({c, i}));
     for (std::size_t j = i + 1; j < 4; ++j)
       if (!is_segment(cell[i], cell[j]))
-        offer(swaps_.without_edge(cell[i], cell[j]));
+        note(swaps_.without_edge(cell[i], cell[j]));
   }
-  return best && make(*best);
+  return found;
+}
+
+bool FlatCells::swap(Index c) {
+  std::optional<Swap> best;
+  for (Swap &candidate : swaps_at(c))
+    if (is_worth(candidate) && (!best || candidate.least_after > best->least_after))
+      best = std::move(candidate);
+  if (!best)
+    return false;
+  make(*best);
+  ++counts_.swapped;
+  return true;
+}
+
+/// The edges of the cells round the edges of a flat cell.
+std::vector<Segment> FlatCells::edges_about(Index c) const {
+  std::vector<Segment> found;
+  std::vector<HalfFacet> ring;
+  const Cell<3> &cell = mesh_.cell(c);
+  const auto note = [&](const Cell<3> &beside) {
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j)
+        found.push_back(
+            {std::min(beside[i], beside[j]), std::max(beside[i], beside[j])});
+  };
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      mesh_.ring({cell[i], cell[j], c}, ring);
+      for (const HalfFacet leave : ring)
+        if (is_inside(leave.cell()))
+          note(mesh_.cell(leave.cell()));
+    }
+  std::ranges::sort(found);
+  const auto rest = std::ranges::unique(found);
+  found.erase(rest.begin(), rest.end());
+  return found;
+}
+
+/// Makes room by a harmless swap beside a cell that cannot be swapped as things are.
+bool FlatCells::swap_after_another(Index c) {
+  for (const auto &[a, b] : edges_about(c)) {
+    if (is_segment(a, b))
+      continue;
+    const auto first = swaps_.without_edge(a, b);
+    if (!first || first->least_after < harmless ||
+        std::ranges::find(first->old, c) != first->old.end())
+      continue;
+    Swap back;
+    for (const Index old : first->old)
+      back.cells.push_back(mesh_.cell(old));
+    back.old = make(*first);
+    if (swap(c))
+      return true;
+    make(back);
+  }
+  return false;
 }
 
 bool FlatCells::is_worth(const Swap &swap) const {
@@ -152,17 +211,16 @@ bool FlatCells::is_worth(const Swap &swap) const {
          swap.least_after > least_gain * swap.least_before;
 }
 
-bool FlatCells::make(const Swap &swap) {
+std::vector<Index> FlatCells::make(const Swap &swap) {
   const Index region = regions_[swap.old.front()];
-  const auto made = mesh_.replace(swap.old, swap.cells);
+  auto made = mesh_.replace(swap.old, swap.cells);
   if (!made)
     throw MeshingError("cells that were swapped do not fit",
                        points_.rounded(swap.cells.front()[0]));
   regions_.resize(mesh_.n_slots(), outside);
   for (const Index c : *made)
     regions_[c] = region;
-  ++counts_.swapped;
-  return true;
+  return std::move(*made);
 }
 
 } // namespace anistar::generate

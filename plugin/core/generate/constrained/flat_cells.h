@@ -50,8 +50,11 @@ private:
   bool peel_outwards(Index c);
   bool peel_and_swap(Index c);
   bool swap(Index c);
+  bool swap_after_another(Index c);
+  [[nodiscard]] std::vector<Segment> edges_about(Index c) const;
+  [[nodiscard]] std::vector<Swap> swaps_at(Index c);
   [[nodiscard]] bool is_worth(const Swap &swap) const;
-  bool make(const Swap &swap);
+  std::vector<Index> make(const Swap &swap);
 };
 
 } // namespace anistar::generate
