@@ -59,6 +59,18 @@ def test_facets_are_turned_outward(turned):
     assert made.facet_tags.tolist() == [1, 2, 3, 4]
 
 
+@pytest.mark.parametrize("scale", [0.1, 3.0])
+def test_a_hollow_keeps_its_sense(scale):
+    points = np.concatenate([TETRAHEDRON - 0.2, scale * (TETRAHEDRON - 0.2)])
+    turn = 1 if scale > 1 else -1
+    second = [tuple(4 + v for v in facet[::turn]) for facet in FACETS]
+    first = [facet[::-turn] for facet in FACETS]
+    plc = PLC(points, facets=[*first, *second])
+    made, report = repaired(plc, "orient")
+    assert report.turned_facets == 0
+    assert volume(made) == pytest.approx(abs(scale**3 - 1) / 6)
+
+
 def test_points_that_are_nearly_one_are_stitched():
     noise = 1e-9 * np.random.default_rng(0).standard_normal((4, 3, 3))
     plc = soup(TETRAHEDRON[np.array(FACETS)] + noise)

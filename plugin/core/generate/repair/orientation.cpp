@@ -1,5 +1,7 @@
 #include "generate/repair/orientation.h"
 
+#include "search/box_tree.h"
+
 #include <algorithm>
 
 namespace anistar::generate {
@@ -53,12 +55,41 @@ double volume_below(std::span<const Vector<3>> points, const Facet<3> &t,
   return a.dot(b.cross(c));
 }
 
+/// A part of a surface without borders.
+struct ClosedPart {
+  std::vector<Index> triangles;
+  Box<3> box;
+  double volume = 0; ///< six times that
+  std::size_t n_turned = 0;
+
+  [[nodiscard]] bool encloses(const ClosedPart &other) const {
+    return (box.low.array() < other.box.low.array()).all() &&
+           (box.high.array() > other.box.high.array()).all();
+  }
+};
+
+ClosedPart closed_part(std::span<const Vector<3>> points,
+                       std::span<const Facet<3>> triangles, std::vector<Index> part,
+                       const std::vector<bool> &is_turned) {
+  ClosedPart out;
+  const Vector<3> &origin = points[triangles[part.front()][0]];
+  for (const Index t : part) {
+    out.n_turned += is_turned[t] ? 1 : 0;
+    out.volume += (is_turned[t] ? -1 : 1) * volume_below(points, triangles[t], origin);
+    for (const Index v : triangles[t])
+      out.box.extend(points[v]);
+  }
+  out.triangles = std::move(part);
+  return out;
+}
+
 } // namespace
 
 TurnedTriangles turned_triangles(std::span<const Vector<3>> points,
                                  std::span<const Facet<3>> triangles) {
   const auto across = neighbours_of(triangles);
   TurnedTriangles out{std::vector<bool>(triangles.size(), false), 0, 0};
+  std::vector<ClosedPart> closed;
   std::vector<bool> is_seen(triangles.size(), false);
   for (std::size_t start = 0; start < triangles.size(); ++start) {
     if (is_seen[start])
@@ -83,13 +114,17 @@ TurnedTriangles turned_triangles(std::span<const Vector<3>> points,
       }
     out.n_open += is_closed ? 0 : 1;
     out.n_one_sided += is_one_sided ? 1 : 0;
-    double volume = 0;
-    const Vector<3> &origin = points[triangles[start][0]];
-    for (const Index t : part)
-      volume +=
-          (out.is_turned[t] ? -1 : 1) * volume_below(points, triangles[t], origin);
-    if (is_closed && volume < 0)
-      for (const Index t : part)
+    if (is_closed)
+      closed.push_back(closed_part(points, triangles, std::move(part), out.is_turned));
+  }
+  for (const ClosedPart &part : closed) {
+    // what is inside of something else may be a hollow: most of it keeps its sense
+    const bool is_nested =
+        std::any_of(closed.begin(), closed.end(), [&](const ClosedPart &other) {
+          return &other != &part && other.encloses(part);
+        });
+    if (is_nested ? 2 * part.n_turned > part.triangles.size() : part.volume < 0)
+      for (const Index t : part.triangles)
         out.is_turned[t] = !out.is_turned[t];
   }
   return out;

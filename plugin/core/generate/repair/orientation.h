@@ -17,7 +17,8 @@ struct TurnedTriangles {
 };
 
 /// Triangles that share an edge with one other are turned to one sense, and parts that
-/// bound a volume so that their normals point out of it.
+/// bound a volume so that their normals point out of it; of those inside of another
+/// one, which may be hollows, most triangles keep their sense.
 [[nodiscard]] TurnedTriangles turned_triangles(std::span<const Vector<3>> points,
                                                std::span<const Facet<3>> triangles);
 
