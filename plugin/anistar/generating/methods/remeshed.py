@@ -6,8 +6,9 @@ import numpy as np
 
 from ...base.arrays import Floats
 from ...meshes.mesh import Mesh
-from ...metric import from_sizes, intersected
+from ...metric import bounded, from_sizes, intersected
 from ...metric.base.mesh import diameter
+from ...metric.kernels.elementary import power
 from ...remeshing.remesh import remesh
 from ...remeshing.report import RemeshReport
 from ..first_mesh import FirstMesh
@@ -15,14 +16,18 @@ from ..options import GenerateOptions
 from ..sizes.wishes import Wish
 from .stages import Clock, Stage
 
-#: A wish that is not uniform is looked at on so many meshes at most.
-MOST_PASSES = 6
+#: A wish that is not settled is looked at on so many meshes at most.
+MOST_PASSES = 10
 
 #: Relative change of the number of points below which the last mesh has all that is wished for.
 SETTLED = 0.05
 
 #: Edges per diagonal of the mesh on which a wish is seen first.
 FIRST_LOOK = 20.0
+
+#: How much smaller sizes may be from look to look: a coarse mesh, which has few points inside,
+#: cannot say how sizes grow inward, and would be as fine there as on its facets.
+SMALLER = 5.0
 
 
 def remeshed(first: FirstMesh, wish: Wish | None, options: GenerateOptions, clock: Clock) -> Stage:
@@ -33,37 +38,36 @@ def remeshed(first: FirstMesh, wish: Wish | None, options: GenerateOptions, cloc
     is_numbered = options.shape == "polyhedron" and first.plc.dim == 3
     mesh = geometry = first.mesh if is_numbered else first.smooth()
     reports: list[RemeshReport] = []
-    for number in range(MOST_PASSES):
+    for number in range(1 if wish.is_settled else MOST_PASSES):
         before = mesh.n_points
-        metric = wish.metric_on(mesh)
-        if number == 0 and wish.may_surprise:
-            metric = _looked_at_closely(mesh, metric)
+        metric, is_whole = _seen(mesh, wish, number)
         budget = options.as_remesh_options(
             max_seconds=clock.seconds_left(),
             # stars of a mesh that is remeshed again need not agree
-            agreement="auto" if wish.is_settled or number > 0 else False,
+            agreement="auto" if is_whole else False,
         )
         done = remesh(mesh, metric, budget, geometry=geometry)
         mesh = done.mesh
         reports.append(done.report)
-        if _is_last(wish, done.report, before, mesh, number):
+        is_steady = is_whole and abs(mesh.n_points - before) <= SETTLED * before
+        if is_steady or not done.report.converged:
             break
-    last = reports[-1]
     return Stage(
         numbered=mesh if is_numbered else None,
         mesh=first.tagged(mesh) if is_numbered else mesh,
-        stop_reason=last.stop_reason,
+        stop_reason=reports[-1].stop_reason,
         remeshing=tuple(reports),
     )
 
 
-def _is_last(wish: Wish, report: RemeshReport, before: int, mesh: Mesh, number: int) -> bool:
-    if wish.is_settled or not report.converged:
-        return True
-    return number > 0 and abs(mesh.n_points - before) <= SETTLED * before
-
-
-def _looked_at_closely(mesh: Mesh, metric: Floats) -> Floats:
-    """Return a metric that is fine enough everywhere to see what a wish is between the points."""
-    look = from_sizes(np.full(mesh.n_points, diameter(mesh) / FIRST_LOOK), mesh.dim)
-    return intersected(metric, look)
+def _seen(mesh: Mesh, wish: Wish, number: int) -> tuple[Floats, bool]:
+    """Return what is wished for as far as a mesh can say it, and whether that is all."""
+    metric = wish.metric_on(mesh)
+    if wish.is_settled:
+        return metric, True
+    look = diameter(mesh) / FIRST_LOOK
+    seen = bounded(metric, h_min=look * power(SMALLER, -number))
+    is_whole = bool((seen == metric).all())
+    if number == 0 and wish.may_surprise:
+        seen = intersected(seen, from_sizes(np.full(mesh.n_points, look), mesh.dim))
+    return seen, is_whole
