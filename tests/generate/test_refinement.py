@@ -4,11 +4,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from generate.polyhedra import book, cube, cube_with_facet, letter_e, letter_l, rotated, wedge
 
 from anistar.generating.constrained import constrained
 from anistar.generating.refinement import RefinementParameters, refined_tetrahedra
-
-from generate.polyhedra import book, cube, cube_with_facet, letter_e, letter_l, rotated, wedge
 
 NO_LI = RefinementParameters(sliver_dihedral=0.0)
 FACETS = np.array([[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]])

@@ -149,9 +149,10 @@ class RefinedTetrahedra:
         was; ``edge_lemma`` and ``facet_lemma``: how many ratios r_v / r_p of rejected parents were
         ``checked``, how many ``violated`` the lemma (v is refused then), the ``least``;
         ``encroached``: what stays so, and why; ``reduced_cavities``, ``not_delaunay``: points on
-        edges that left hidden cells, and facets that are not locally Delaunay in the end; ``above_bound``, ``slivers``: tetrahedra left; ``largest_ratio``,
-        ``least_dihedral`` (degrees); ``l_1``, ``l_2``: shortest edge before the elimination of
-        slivers, and the floor of that; seconds.
+        edges that left hidden cells, and facets that are not locally Delaunay in the end;
+        ``above_bound``, ``slivers``: tetrahedra left; ``largest_ratio``, ``least_dihedral``
+        (degrees); ``l_1``, ``l_2``: shortest edge before the elimination of slivers, and the
+        floor of that; seconds.
     """
 
     points: Floats
