@@ -188,6 +188,18 @@ def test_pages_of_a_book_end(degrees, most):
     assert made.record["edge_lemma"]["violated"] == made.record["facet_lemma"]["violated"] == 0
 
 
+def test_long_edges_side_by_side_do_not_block_each_other():
+    pieces, made = refine(book(20), 0.09)
+    assert_valid(made, pieces)
+    record = made.record
+    assert record["reduced_cavities"] > 0
+    assert record["not_delaunay"] == 0
+    assert record["refusals"]["no_cavity"] == 0
+    assert record["edge_lemma"]["violated"] == record["facet_lemma"]["violated"] == 0
+    x = made.points[made.edges]
+    assert np.linalg.norm(x[:, 1] - x[:, 0], axis=1).max() <= 1.33 * 0.09
+
+
 def test_edges_of_a_cluster_are_split_on_spheres_of_radii_that_are_powers_of_two():
     pieces, made = refine(wedge(20), 0.15)
     assert_valid(made, pieces)
