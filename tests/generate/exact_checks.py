@@ -14,8 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from anistar.base.arrays import Ints
-from anistar.generating.constrained import Constrained
-from anistar.generating.plc import PLC
+from anistar.generating.geometry.plc import PLC
+from anistar.generating.methods.constrained import Constrained
 
 Point = tuple[Fraction, Fraction, Fraction]
 Face = tuple[int, ...]

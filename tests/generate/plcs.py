@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from anistar.base.arrays import Floats
-from anistar.generating.plc import PLC
+from anistar.generating.geometry.plc import PLC
 
 
 def box(low: float = 0.0, high: float = 1.0) -> tuple[Floats, list[list[int]]]:

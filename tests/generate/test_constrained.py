@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from anistar import Mesh, MeshingError
-from anistar.generating.constrained import Constrained, constrained
 from anistar.generating.first_mesh import FirstMesh
+from anistar.generating.geometry.plc import PLC
+from anistar.generating.geometry.region import Region
+from anistar.generating.methods.constrained import Constrained, constrained
 from anistar.generating.options import GenerateOptions
-from anistar.generating.plc import PLC
-from anistar.generating.region import Region
 
 HARD = {
     "cube": plcs.cube(),

@@ -18,7 +18,12 @@ from plane_complexes import (
 import anistar
 from anistar.generating import PLC, Region
 from anistar.generating.first_mesh import FirstMesh
-from anistar.generating.plane import PlaneBudget, constrained_plane, plane_sizes, refined_plane
+from anistar.generating.methods.plane import (
+    PlaneBudget,
+    constrained_plane,
+    plane_sizes,
+    refined_plane,
+)
 from anistar.generating.report.shapes import least_angles
 from anistar.metric import from_sizes, graded
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from generate.polyhedra import book, cube, cube_with_facet, letter_e, letter_l, rotated, wedge
 
-from anistar.generating.constrained import constrained
-from anistar.generating.refinement import RefinementParameters, refined_tetrahedra
+from anistar.generating.methods.constrained import constrained
+from anistar.generating.methods.refinement import RefinementParameters, refined_tetrahedra
 
 NO_LI = RefinementParameters(sliver_dihedral=0.0)
 FACETS = np.array([[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]])
@@ -186,6 +186,18 @@ def test_pages_of_a_book_end(degrees, most):
     assert made.stop_reason == "finished"
     assert len(made.cells) <= most
     assert made.record["edge_lemma"]["violated"] == made.record["facet_lemma"]["violated"] == 0
+
+
+def test_long_edges_side_by_side_do_not_block_each_other():
+    pieces, made = refine(book(20), 0.09)
+    assert_valid(made, pieces)
+    record = made.record
+    assert record["reduced_cavities"] > 0
+    assert record["not_delaunay"] == 0
+    assert record["refusals"]["no_cavity"] == 0
+    assert record["edge_lemma"]["violated"] == record["facet_lemma"]["violated"] == 0
+    x = made.points[made.edges]
+    assert np.linalg.norm(x[:, 1] - x[:, 0], axis=1).max() <= 1.33 * 0.09
 
 
 def test_edges_of_a_cluster_are_split_on_spheres_of_radii_that_are_powers_of_two():

@@ -2,10 +2,10 @@
 
 from .checking import PLCError, PLCProblem, check_plc
 from .generate import generate
+from .geometry.plc import PLC
+from .geometry.region import Region
 from .given import as_plc
 from .options import GenerateOptions
-from .plc import PLC
-from .region import Region
 from .repairing import RepairReport, Wrapped, repaired, wrap
 from .result import Generated
 from .surface_files import SurfaceReport, read_plc, read_plc_with_report, write_plc

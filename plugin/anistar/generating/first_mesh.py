@@ -12,7 +12,7 @@ from ..meshes.mesh import Mesh
 from ..meshes.topology import vector_lengths
 from ..metric import exp_metric, log_metric
 from ..metric.kernels.elementary import exp, log
-from .plc import PLC
+from .geometry.plc import PLC
 
 #: Two segments that meet at a point are one line if the sine of the angle between is less.
 STRAIGHT = 1e-10

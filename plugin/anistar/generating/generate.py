@@ -11,15 +11,15 @@ from ..base.settings import chosen
 from ..base.telling import tell
 from ..objects import AnyMesh
 from .checking import require_valid
-from .constrained import Constrained, constrained
 from .first_mesh import FirstMesh
+from .geometry.plc import PLC
 from .given import as_plc
+from .methods.constrained import Constrained, constrained
+from .methods.plane import PlaneBudget, PlanePieces, constrained_plane
 from .methods.refined import refined
 from .methods.remeshed import remeshed
 from .methods.stages import Clock, Stage
 from .options import GenerateOptions
-from .plane import PlaneBudget, PlanePieces, constrained_plane
-from .plc import PLC
 from .repairing import repaired
 from .report import GenerateReport
 from .report.measures import FacetMeasures

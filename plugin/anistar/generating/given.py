@@ -6,8 +6,8 @@ import os
 from typing import Any
 
 from ..objects import as_mesh
-from .planar_facets import FLAT_ANGLE, FLATNESS
-from .plc import PLC
+from .geometry.planar_facets import FLAT_ANGLE, FLATNESS
+from .geometry.plc import PLC
 from .surface_files import read_plc
 from .surface_files.content.assembly import Planar, assembled
 from .surface_files.content.raw_surface import RawSurface

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ... import _core
-from ..plc import PLC
+from ..geometry.plc import PLC
 from .problem import KINDS, PLCProblem
 
 #: In diagonals of the complex: what is closer without touching is a near-miss.

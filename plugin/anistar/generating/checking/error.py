@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...base.errors import MeshingError
-from ..plc import PLC
+from ..geometry.plc import PLC
 from .check import check_plc
 from .problem import KINDS, PLCProblem
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.atomic import replaced
-from ..plc import PLC
+from ..geometry.plc import PLC
 from .problem import KINDS, PLCProblem
 
 _KINDS = list(KINDS)

@@ -10,9 +10,9 @@ from ...base.arrays import Floats
 from ...base.progress import task
 from ..first_mesh import FirstMesh, Pieces
 from ..options import GenerateOptions
-from ..plane import BOUND, PlaneBudget, PlanePieces, refined_plane
-from ..refinement import RefinementParameters, refined_tetrahedra
 from ..sizes.wishes import Wish
+from .plane import BOUND, PlaneBudget, PlanePieces, refined_plane
+from .refinement import RefinementParameters, refined_tetrahedra
 from .stages import Clock, Stage
 
 #: A wish that is not uniform is looked at on so many meshes at most.

@@ -11,7 +11,7 @@ from ... import _core
 from ...base.arrays import Bools
 from ...base.errors import MeshingError
 from ..checking import check_plc
-from ..plc import PLC
+from ..geometry.plc import PLC
 from .report import RepairReport
 from .soup import Soup
 from .stitching import merged, stitched, without_flat

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base.arrays import AnyArray, Floats, Ints
-from ..plc import PLC
+from ..geometry.plc import PLC
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ... import _core
-from ..plc import PLC
+from ..geometry.plc import PLC
 
 #: Openings that are smaller than so many offsets are closed, unless alpha is given.
 ALPHA_PER_OFFSET = 20.0

@@ -12,8 +12,8 @@ from ...base.errors import FormatError
 from ...formats import read_with_report
 from ...formats.parsing.reading import reading
 from ...formats.suffixes import suffix_of
-from ..planar_facets import FLAT_ANGLE, FLATNESS
-from ..plc import PLC
+from ..geometry.planar_facets import FLAT_ANGLE, FLATNESS
+from ..geometry.plc import PLC
 from .content.assembly import Planar, SurfaceReport, assembled
 from .content.raw_surface import RawSurface
 from .others import meshio_reader, of_meshes

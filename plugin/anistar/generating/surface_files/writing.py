@@ -21,7 +21,7 @@ from ...formats.medit import gmf
 from ...formats.medit.gmf_container import Container
 from ...formats.parsing.text_rows import printed
 from ...formats.suffixes import BINARY, suffix_of
-from ..plc import PLC
+from ..geometry.plc import PLC
 from .tetgen.poly_writer import written_poly
 
 _log = logging.getLogger(__name__)

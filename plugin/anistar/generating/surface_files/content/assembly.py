@@ -9,9 +9,9 @@ import numpy as np
 
 from .... import _core
 from ....base.arrays import AnyArray
-from ...planar_facets import FLAT_ANGLE, FLATNESS
-from ...plc import PLC
-from ...plc_arrays import require_in_range
+from ...geometry.planar_facets import FLAT_ANGLE, FLATNESS
+from ...geometry.plc import PLC
+from ...geometry.plc_arrays import require_in_range
 from .raw_surface import Faces, RawSurface
 
 

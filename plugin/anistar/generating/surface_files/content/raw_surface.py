@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ....base.arrays import AnyArray, Floats
-from ...plc_arrays import Names
-from ...region import Region
+from ...geometry.plc_arrays import Names
+from ...geometry.region import Region
 
 
 def _none() -> AnyArray:

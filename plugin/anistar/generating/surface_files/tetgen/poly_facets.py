@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....base.arrays import AnyArray, Floats
-from ...facet_loops import Loop, Loops
+from ...geometry.facet_loops import Loop, Loops
 
 _LEAST = 3
 

@@ -20,8 +20,8 @@ from ....formats.parsing.numbering import Numbering
 from ....formats.parsing.reading import reading
 from ....formats.suffixes import suffix_of
 from ....metric.kernels.elementary import power
-from ...plc import PLC
-from ...region import Region
+from ...geometry.plc import PLC
+from ...geometry.region import Region
 from ..content.lines import Lines
 from .poly_facets import PolyFacet, facets_of
 

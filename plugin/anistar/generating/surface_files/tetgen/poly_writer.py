@@ -6,8 +6,8 @@ import numpy as np
 
 from ....base.arrays import Floats
 from ....formats.parsing.text_rows import printed
-from ...facet_loops import Loop, Loops
-from ...plc import PLC
+from ...geometry.facet_loops import Loop, Loops
+from ...geometry.plc import PLC
 
 
 def written_poly(plc: PLC, *, is_short: bool) -> str:

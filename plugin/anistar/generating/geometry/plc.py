@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.arrays import Floats, Ints
-from ..meshes.svg import drawing_of
-from ..metric.base.told import Told
-from ..objects import AnyMesh, as_mesh
+from ...base.arrays import Floats, Ints
+from ...meshes.svg import drawing_of
+from ...metric.base.told import Told
+from ...objects import AnyMesh, as_mesh
 from .borders import borders_of
 from .facet_loops import FacetLoops, Loops
 from .of_mesh import MeshBorder

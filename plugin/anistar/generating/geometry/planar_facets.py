@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import _core
-from ..base.arrays import Floats, Ints
+from ... import _core
+from ...base.arrays import Floats, Ints
 
 FLAT_ANGLE = 0.2
 """The largest angle between a triangle and the plane of its facet, in degrees."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.arrays import AnyArray, Ints
+from ...base.arrays import AnyArray, Ints
 
 
 def borders_of(triangles: Ints, owners: Ints) -> tuple[Ints, Ints]:

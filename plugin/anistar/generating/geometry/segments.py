@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.arrays import Ints
+from ...base.arrays import Ints
 from .borders import first_of_equal
 
 

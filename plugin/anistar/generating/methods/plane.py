@@ -10,11 +10,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import _core
-from ..base.arrays import Floats, Ints
-from ..base.core_errors import meshing_errors
-from ..meshes.topology import cell_volumes, edge_lengths
-from .plc import PLC
+from ... import _core
+from ...base.arrays import Floats, Ints
+from ...base.core_errors import meshing_errors
+from ...meshes.topology import cell_volumes, edge_lengths
+from ..geometry.plc import PLC
 
 PlaneSizes = float | ArrayLike | Callable[[Floats], ArrayLike]
 """One length of edges, one at each point of the mesh, or ``size(points)``."""

@@ -8,8 +8,8 @@ from typing import overload
 
 import numpy as np
 
-from .. import _core
-from ..base.arrays import Floats, Ints
+from ... import _core
+from ...base.arrays import Floats, Ints
 from .facet_loops import FacetLoops, Loops
 
 

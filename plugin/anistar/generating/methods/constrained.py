@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from .. import _core
-from ..base.arrays import Floats, Ints
-from ..base.core_errors import meshing_errors
-from ..base.progress import task
-from .options import GenerateOptions
-from .plc import PLC
+from ... import _core
+from ...base.arrays import Floats, Ints
+from ...base.core_errors import meshing_errors
+from ...base.progress import task
+from ..geometry.plc import PLC
+from ..options import GenerateOptions
 
 #: Rules of the core, by what the options call them.
 RULES = {"regions": "parity", "winding": "winding", "nonzero": "nonzero"}

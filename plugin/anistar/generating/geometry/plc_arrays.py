@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.arrays import AnyArray, Floats, Ints
-from ..meshes.mesh import as_int32
+from ...base.arrays import AnyArray, Floats, Ints
+from ...meshes.mesh import as_int32
 from .region import Region
 
 Names = dict[tuple[int, int], str]

@@ -9,9 +9,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..base.arrays import AnyArray, Floats, Ints
-from ..meshes.mesh import Mesh
-from ..meshes.topology import cell_volumes, facet_table
+from ...base.arrays import AnyArray, Floats, Ints
+from ...meshes.mesh import Mesh
+from ...meshes.topology import cell_volumes, facet_table
 from .region import Region
 
 

@@ -8,9 +8,9 @@ from typing import Any, overload
 
 import numpy as np
 
-from .. import _core
-from ..base.arrays import AnyArray, Floats, Ints
-from ..meshes.mesh import as_int32
+from ... import _core
+from ...base.arrays import AnyArray, Floats, Ints
+from ...meshes.mesh import as_int32
 
 Loop = tuple[int, ...]
 Loops = tuple[Loop, ...]

@@ -10,9 +10,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import _core
-from ..base.arrays import Floats, Ints
-from ..metric.base.by_name import by_name, require_numbers
+from ... import _core
+from ...base.arrays import Floats, Ints
+from ...metric.base.by_name import by_name, require_numbers
 
 Sizes = float | ArrayLike | Callable[[Floats], ArrayLike]
 """One size, one for each point, or a function of an (n, 3) array of points."""
@@ -149,11 +149,10 @@ class RefinedTetrahedra:
         was; ``edge_lemma`` and ``facet_lemma``: how many ratios r_v / r_p of rejected parents were
         ``checked``, how many ``violated`` the lemma (v is refused then), the ``least``;
         ``encroached``: what stays so, and why; ``reduced_cavities``, ``not_delaunay``: points on
-        edges that left hidden cells, and facets that are not locally Delaunay in the end; ``above_bound``, ``slivers``: tetrahedra left; ``largest_ratio``,
-        ``least_dihedral`` (degrees); ``l_1``, ``l_2``: shortest edge before the elimination of
-        slivers, and the floor of that; seconds.
-    steiner_ends, steiner_shares : arrays
-        Empty: nothing is interpolated from the complex any more.
+        edges that left hidden cells, and facets that are not locally Delaunay in the end;
+        ``above_bound``, ``slivers``: tetrahedra left; ``largest_ratio``, ``least_dihedral``
+        (degrees); ``l_1``, ``l_2``: shortest edge before the elimination of slivers, and the
+        floor of that; seconds.
     """
 
     points: Floats

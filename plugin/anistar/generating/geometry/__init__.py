@@ -1,0 +1,1 @@
+"""Geometry of domains as piecewise linear complexes."""
