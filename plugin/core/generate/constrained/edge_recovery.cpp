@@ -118,6 +118,7 @@ void EdgeRecovery::split(Index edge) {
                            " to point " + std::to_string(line.to) +
                            " stays missing, however finely it is divided",
                        points_.rounded(part.from));
+  require_end(line);
   counts_.on_flat_lines += line.is_flat();
   const Index p = points_.add({line.from, line.to, t});
   mesh_.add_vertex();
@@ -125,6 +126,18 @@ void EdgeRecovery::split(Index edge) {
   for (const Index half : facets_.split(edge, p))
     push(half);
   push_lost_edges();
+}
+
+/// Thin stacks of facets take a hundred points for each of theirs; what takes more by
+/// far has facets that cross or touch.
+void EdgeRecovery::require_end(const Line &line) const {
+  constexpr std::size_t always = 100'000, per_point = 1'000;
+  const auto n_given = static_cast<std::size_t>(points_.n_given());
+  if (points_.steiner_points().size() > always + per_point * n_given)
+    throw MeshingError("edges need more and more points, now from point " +
+                           std::to_string(line.from) + " to point " +
+                           std::to_string(line.to),
+                       points_.rounded(line.from));
 }
 
 void EdgeRecovery::push_lost_edges() {

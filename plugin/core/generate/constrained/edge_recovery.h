@@ -57,6 +57,7 @@ private:
   bool flip(Index edge);
   [[nodiscard]] bool is_getting_too_many(Index flat_edge);
   void split(Index edge);
+  void require_end(const Line &line) const;
   void push_lost_edges();
 };
 

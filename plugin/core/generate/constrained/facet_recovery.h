@@ -5,6 +5,7 @@
 #include "generate/constrained/exact_points.h"
 #include "generate/constrained/facet_side.h"
 #include "generate/constrained/facet_triangles.h"
+#include "generate/constrained/facet_walk.h"
 #include "generate/constrained/ghost_mesh.h"
 #include "generate/constrained/gift_wrapping.h"
 
@@ -13,10 +14,9 @@
 
 namespace anistar::generate {
 
-/// Walks over the plane of each facet from its edges on. A cell that the facet passes
-/// through is removed with all it can reach through facets that cross the plane; the
-/// halves of this cavity are filled on their own, the one above first, as it decides on
-/// the triangles between them.
+/// A cell that a facet passes through is removed with all it can reach through facets
+/// that cross the plane; the halves of this cavity are filled on their own, the one
+/// above first, as it decides on the triangles between them.
 class FacetRecovery {
 public:
   struct Counts {
@@ -26,7 +26,8 @@ public:
 
   FacetRecovery(const ExactPoints &points, GhostMesh &mesh,
                 const FacetTriangles &facets)
-      : points_(points), mesh_(mesh), facets_(facets), side_(points) {}
+      : points_(points), mesh_(mesh), facets_(facets), side_(points),
+        walk_(mesh, facets, side_) {}
 
   /// The walls of the mesh are numbers of planes afterwards; their cells on the
   /// positive side see them in the sense of the plane.
@@ -34,29 +35,16 @@ public:
   Counts run(Monitor &monitor);
 
 private:
-  /// An edge of the mesh in a plane, with the facet on its left, seen from above.
-  struct Border {
-    Index from, to;
-  };
-
   const ExactPoints &points_;
   GhostMesh &mesh_;
   const FacetTriangles &facets_;
   FacetSide side_;
+  FacetWalk walk_;
   Index plane_ = none;
   Counts counts_;
-  Visits in_cavity_, noted_;
-  std::vector<HalfFacet> found_; ///< facets of the mesh in the plane, from above
-  std::vector<HalfFacet> ring_;
+  Visits in_cavity_;
 
   void recover(const std::vector<Index> &triangles, Monitor &monitor);
-  [[nodiscard]] bool find_triangles(const std::vector<Index> &triangles);
-  [[nodiscard]] HalfFacet find_triangle(const Facet<3> &triangle);
-  [[nodiscard]] HalfFacet from_above(HalfFacet h, const Facet<3> &triangle) const;
-  [[nodiscard]] Index walk(const std::vector<Index> &triangles);
-  [[nodiscard]] std::vector<Border> borders(const std::vector<Index> &triangles) const;
-  [[nodiscard]] HalfFacet look_left(const Border &border, Index &crossed);
-
   void carve(Index crossed, Monitor &monitor);
   [[nodiscard]] std::vector<Index> collect_cavity(Index crossed);
   [[nodiscard]] std::array<HalfCavity, 2> halves(const std::vector<Index> &cavity);
