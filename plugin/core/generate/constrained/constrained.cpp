@@ -93,6 +93,7 @@ Constrained constrained_tetrahedralisation(const Plc &plc,
                         .remove(settings.facets_may_flip, monitor);
   counts.peeled = flat.peeled;
   counts.removed = flat.swapped;
+  counts.moved = flat.moved;
   counts.flat_left = flat.left;
   counts.predicates = points.counts().asked;
   counts.exact_predicates = points.counts().exact;

@@ -78,26 +78,37 @@ ExactPoints::Exact ExactPoints::exact(const Vector<3> &x) {
 }
 
 Index ExactPoints::add(const SteinerPoint &point) {
-  const auto [a, b, t] = point;
-  const Exact from = exact(a);
-  const Differences step = exact(b) - from;
-  auto place = std::make_unique<Exact>();
-  Vector<3> x;
-  double error = 0;
-  for (int i = 0; i < 3; ++i) {
-    place->x[i] = from.x[i] + Number(t) * step[i];
-    x[i] = CGAL::to_double(place->x[i]);
-    if (place->x[i] != Number(x[i]))
-      error = std::max(error, 4 * round_off * std::abs(x[i]));
-  }
-  rounded_.push_back(x);
-  error_.push_back(error);
+  rounded_.emplace_back();
+  error_.push_back(0);
   steiner_.push_back(point);
-  exact_.push_back(std::move(place));
+  exact_.emplace_back();
+  place(size() - 1);
   std::vector<Index> shared;
-  std::ranges::set_intersection(planes_[a], planes_[b], std::back_inserter(shared));
+  std::ranges::set_intersection(planes_[point.a], planes_[point.b],
+                                std::back_inserter(shared));
   planes_.push_back(std::move(shared));
   return size() - 1;
+}
+
+void ExactPoints::move(Index v, double t) {
+  steiner_[v - n_given_].t = t;
+  place(v);
+}
+
+void ExactPoints::place(Index v) {
+  const auto [a, b, t] = steiner(v);
+  const Exact from = exact(a);
+  const Differences step = exact(b) - from;
+  auto made = std::make_unique<Exact>();
+  Vector<3> &x = rounded_[v];
+  error_[v] = 0;
+  for (int i = 0; i < 3; ++i) {
+    made->x[i] = from.x[i] + Number(t) * step[i];
+    x[i] = CGAL::to_double(made->x[i]);
+    if (made->x[i] != Number(x[i]))
+      error_[v] = std::max(error_[v], 4 * round_off * std::abs(x[i]));
+  }
+  exact_[v - n_given_] = std::move(made);
 }
 
 void ExactPoints::put_on_plane(Index v, Index plane) {

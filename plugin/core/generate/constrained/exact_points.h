@@ -28,6 +28,8 @@ public:
   /// Places a point, which lies on all planes that its ends share.
   /// @pre 0 < t < 1
   Index add(const SteinerPoint &point);
+  /// Moves a Steiner point along its edge, and none that depends on it.
+  void move(Index v, double t);
   /// Tells that v lies exactly on a plane, a number that the caller gives.
   void put_on_plane(Index v, Index plane);
 
@@ -78,6 +80,8 @@ private:
   std::vector<std::unique_ptr<const Exact>> exact_; ///< of Steiner points
   mutable PredicateCounts counts_;
 
+  /// Computes where a Steiner point is.
+  void place(Index v);
   [[nodiscard]] Exact exact(Index v) const;
   [[nodiscard]] static Exact exact(const Vector<3> &x);
   [[nodiscard]] Side side_of_sphere(const Cell<3> &cell, Index p) const;

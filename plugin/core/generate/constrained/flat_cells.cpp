@@ -22,10 +22,11 @@ constexpr int most_passes = 4;
 
 } // namespace
 
-FlatCells::FlatCells(const ExactPoints &points, GhostMesh &mesh,
-                     const FacetTriangles &facets, PerCell<Index> &regions)
+FlatCells::FlatCells(ExactPoints &points, GhostMesh &mesh, const FacetTriangles &facets,
+                     PerCell<Index> &regions)
     : points_(points), mesh_(mesh), facets_(facets), regions_(regions),
-      facet_of_plane_(facets.facets_of_planes()), swaps_(points, mesh, regions) {}
+      facet_of_plane_(facets.facets_of_planes()), swaps_(points, mesh, regions),
+      moves_(points, mesh, regions) {}
 
 bool FlatCells::is_inside(Index c) const {
   return mesh_.is_alive(c) && regions_[c] != outside;
@@ -44,7 +45,8 @@ FlatCells::Counts FlatCells::remove(bool may_peel, Monitor &monitor) {
     bool is_new = false;
     for (const Index c : flat_cells(flat))
       if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < flat)
-        is_new |= swap(c) || (may_peel && peel_and_swap(c)) || swap_after_another(c);
+        is_new |= swap(c) || (may_peel && peel_and_swap(c)) || swap_after_another(c) ||
+                  move(c);
     if (!is_new)
       break;
   }
@@ -160,6 +162,12 @@ bool FlatCells::swap(Index c) {
   make(*best);
   ++counts_.swapped;
   return true;
+}
+
+bool FlatCells::move(Index c) {
+  const bool is_better = moves_.improve(c);
+  counts_.moved += is_better;
+  return is_better;
 }
 
 /// The edges of the cells round the edges of a flat cell.

@@ -4,6 +4,7 @@
 
 #include "base/monitor.h"
 #include "generate/constrained/facet_triangles.h"
+#include "generate/constrained/steiner_moves.h"
 #include "generate/constrained/swaps.h"
 
 #include <vector>
@@ -16,22 +17,23 @@ namespace anistar::generate {
 class FlatCells {
 public:
   struct Counts {
-    std::size_t peeled = 0, swapped = 0, left = 0;
+    std::size_t peeled = 0, swapped = 0, moved = 0, left = 0;
   };
 
-  FlatCells(const ExactPoints &points, GhostMesh &mesh, const FacetTriangles &facets,
+  FlatCells(ExactPoints &points, GhostMesh &mesh, const FacetTriangles &facets,
             PerCell<Index> &regions);
 
   /// @param may_peel whether facets may move within their flatness
   Counts remove(bool may_peel, Monitor &monitor);
 
 private:
-  const ExactPoints &points_;
+  ExactPoints &points_;
   GhostMesh &mesh_;
   const FacetTriangles &facets_;
   PerCell<Index> &regions_;
   std::vector<Index> facet_of_plane_;
   Swaps swaps_;
+  SteinerMoves moves_;
   Counts counts_;
 
   [[nodiscard]] bool is_inside(Index c) const;
@@ -51,6 +53,7 @@ private:
   bool peel_and_swap(Index c);
   bool swap(Index c);
   bool swap_after_another(Index c);
+  bool move(Index c);
   [[nodiscard]] std::vector<Segment> edges_about(Index c) const;
   [[nodiscard]] std::vector<Swap> swaps_at(Index c);
   [[nodiscard]] bool is_worth(const Swap &swap) const;
