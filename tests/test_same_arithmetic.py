@@ -27,6 +27,7 @@ MAY = {
     "anistar.pictures.volume:* *": PICTURE,
     "anistar.views.scene:* *": PICTURE,
     "anistar.views.web_view:* *": PICTURE,
+    "anistar.generating.report.shapes:least_angles numpy.arccos": "rounded figures of a report",
     "anistar.formats.content.plane:_no_plane numpy.linalg": "chooses the words of an error",
     "anistar.formats.content.second_order:_rows_of @": EXACT,
     "anistar.formats.content.second_order:_refined **": EXACT,

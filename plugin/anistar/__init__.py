@@ -7,6 +7,22 @@ from . import metric
 from .base.errors import FormatError, MeshingError
 from .base.progress import progress
 from .formats import read, write
+from .generating import (
+    PLC,
+    Generated,
+    GenerateOptions,
+    PLCError,
+    PLCProblem,
+    Region,
+    RepairReport,
+    Wrapped,
+    check_plc,
+    generate,
+    read_plc,
+    repaired,
+    wrap,
+    write_plc,
+)
 from .judging.certificate import Certificate, certify
 from .judging.explanation import FacetOfStar, SimplexOfStar, explain_star, explain_surface_star
 from .loops.adapt import Adapted, adapt
@@ -38,6 +54,7 @@ from .transfer import (
 __version__ = "0.1.0"
 
 __all__ = [
+    "PLC",
     "AdaptOptions",
     "Adapted",
     "Certificate",
@@ -45,6 +62,8 @@ __all__ = [
     "FacetOfStar",
     "Field",
     "FormatError",
+    "GenerateOptions",
+    "Generated",
     "KeepOptions",
     "Loop",
     "LoopError",
@@ -53,8 +72,12 @@ __all__ = [
     "MeshingError",
     "MetricError",
     "MetricOptions",
+    "PLCError",
+    "PLCProblem",
+    "Region",
     "RemeshOptions",
     "Remeshed",
+    "RepairReport",
     "Settled",
     "SimplexOfStar",
     "Step",
@@ -63,24 +86,31 @@ __all__ = [
     "Transferred",
     "UnsteadyOptions",
     "Violation",
+    "Wrapped",
     "__version__",
     "adapt",
     "adapt_loop",
     "certify",
+    "check_plc",
     "convergence_study",
     "explain_star",
     "explain_surface_star",
+    "generate",
     "metric",
     "needs_adaptation",
     "progress",
     "read",
+    "read_plc",
     "remesh",
+    "repaired",
     "transfer",
     "transfer_operator",
     "transfer_quadrature",
     "unsteady_loop",
     "validate",
+    "wrap",
     "write",
+    "write_plc",
 ]
 
 follow_imports()

@@ -193,9 +193,15 @@ _GENERATE: dict[str, tuple[Any, str]] = {
     ),
     "ridge_angle": (float, "angle in degrees from which a smooth surface has a ridge"),
     "inside": (str, "what is meshed: regions (default), winding or nonzero"),
-    "repair": (str, "what may be changed of what is wrong: none (default), orient, stitch, resolve"),
+    "repair": (
+        str,
+        "what may be changed of what is wrong: none (default), orient, stitch, resolve",
+    ),
     "bound": (float, "of refine: largest ratio of circumradius and shortest edge"),
-    "sliver_dihedral": (float, "of refine: dihedral angle in degrees below which cells are slivers"),
+    "sliver_dihedral": (
+        float,
+        "of refine: dihedral angle in degrees below which cells are slivers",
+    ),
     "size_at": (_size_at, "largest sizes at facets or regions, by name or tag: wall=0.1,hole=0.02"),
     "growth": (float, "growth of sizes from edge to edge (default 1.5)"),
     "follow_widths": (

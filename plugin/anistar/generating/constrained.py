@@ -1,4 +1,4 @@
-"""The constrained Delaunay mesh of a complex: its facets and segments are in the tetrahedra."""
+"""The constrained Delaunay mesh of a complex, to whose facets and segments it conforms."""
 
 from __future__ import annotations
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from dataclasses import replace
 from typing import Any
 
 from ..base.progress import task
@@ -9,23 +11,26 @@ from ..base.settings import chosen
 from ..base.telling import tell
 from ..objects import AnyMesh
 from .checking import require_valid
-from .constrained import constrained
+from .constrained import Constrained, constrained
 from .first_mesh import FirstMesh
-from .geometries import AnyGeometry, opened_geometry
-from .measures import FacetMeasures
+from .given import as_plc
+from .methods.refined import refined
+from .methods.remeshed import remeshed
+from .methods.stages import Clock, Stage
 from .options import GenerateOptions
-from .refined import refined
-from .remeshed import remeshed
+from .plane import PlaneBudget, PlanePieces, constrained_plane
+from .plc import PLC
 from .repairing import repaired
 from .report import GenerateReport
+from .report.measures import FacetMeasures
+from .report.shapes import CellShapes
 from .result import Generated
-from .shapes import CellShapes
-from .stages import Clock, Stage
-from .wanted import Sizes, wish_for
+from .sizes.wanted import Sizes, wanted_of
+from .surface_files import read_plc_with_report
 
 
 def generate(
-    geometry: AnyGeometry,
+    geometry: Any,
     size: Sizes | None = None,
     metric: Sizes | None = None,
     options: GenerateOptions | None = None,
@@ -84,17 +89,17 @@ def generate(
 
 
 def _generated(
-    geometry: AnyGeometry, size: Sizes | None, metric: Sizes | None, options: GenerateOptions
+    geometry: Any, size: Sizes | None, metric: Sizes | None, options: GenerateOptions
 ) -> Generated:
     clock = Clock(options.max_seconds)
     with task("generate"):
         with clock.timed("reading"):
-            opened = opened_geometry(geometry)
+            plc, remarks = _opened(geometry)
         with clock.timed("checking"):
-            plc, repair = repaired(opened.plc, options.repair)
+            plc, repair = repaired(plc, options.repair)
             require_valid(plc)
         with clock.timed("constrained"):
-            pieces = constrained(plc, options)
+            pieces = _constrained(plc, options, clock)
             first = FirstMesh.of(plc, pieces)
         with clock.timed(options.method):
             made = _finished(first, size, metric, options, clock)
@@ -105,17 +110,32 @@ def _generated(
         n_points=made.mesh.n_points,
         n_cells=made.mesh.n_cells,
         shapes=CellShapes.of(made.mesh),
-        measures=FacetMeasures.of(first, made.numbered or first.mesh),
+        measures=FacetMeasures.of(first, made),
         repair=repair.as_dict(),
         constrained=pieces.counts,
         refinement=made.refinement,
         remeshing=made.remeshing,
         warnings=(*pieces.warnings, *made.warnings),
         seconds=clock.seconds,
-        reading=opened.remarks,
+        reading=remarks,
     )
     tell(report.warnings)
     return Generated(made.mesh, report)
+
+
+def _opened(geometry: Any) -> tuple[PLC, tuple[str, ...]]:
+    """Return the complex that is given, and what was changed to read it."""
+    if isinstance(geometry, str | os.PathLike):
+        plc, report = read_plc_with_report(geometry)
+        return plc, report.warnings
+    return as_plc(geometry), ()
+
+
+def _constrained(plc: PLC, options: GenerateOptions, clock: Clock) -> Constrained | PlanePieces:
+    if plc.dim == 3:
+        return constrained(plc, options)
+    budget = PlaneBudget(max_seconds=clock.seconds_left(), callback=options.callback)
+    return constrained_plane(plc, options.inside, budget)
 
 
 def _finished(
@@ -130,8 +150,8 @@ def _finished(
         if size is not None or metric is not None:
             raise ValueError('method="constrained" adds no points for a size or a metric')
         return Stage(mesh=first.tagged(), numbered=first.mesh)
-    if options.method == "refine":
-        if metric is not None:
-            raise ValueError('method="refine" makes isotropic meshes: give the metric to "remesh"')
-        return refined(first, size, options, clock)
-    return remeshed(first, wish_for(first, size, metric, options), options, clock)
+    if options.method == "refine" and metric is not None:
+        raise ValueError('method="refine" makes isotropic meshes: give the metric to "remesh"')
+    wanted = wanted_of(first, size, metric, options)
+    make = refined if options.method == "refine" else remeshed
+    return replace(make(first, wanted.wish, options, clock), warnings=wanted.warnings)

@@ -46,9 +46,10 @@ class GenerateOptions:
     repair : "none", "orient", "stitch" or "resolve"
         What may be changed of a geometry that is not valid, see `repaired`; each includes those
         before it, and the report says what was done. "none" refuses such geometries.
-    bound : float
+    bound : float, optional
         Of "refine": the largest ratio of circumradius and shortest edge, B of the theory, which
         proves an end above 2 in space, and above 1.414 in the plane; less is tried under a guard.
+        None is 2 in space, and 1.15 in the plane, where angles are above 25 degrees then.
     sliver_dihedral : float
         Of "refine", in degrees: a flatter tetrahedron is a sliver. 0 eliminates none.
     size_at : mapping of str or int to float
@@ -76,7 +77,7 @@ class GenerateOptions:
     ridge_angle: float = 45.0
     inside: Inside = "regions"
     repair: Repair = "none"
-    bound: float = 2.0
+    bound: float | None = None
     sliver_dihedral: float = 12.0
     size_at: Mapping[Tag, float] = field(default_factory=dict)
     growth: float = 1.5
@@ -94,19 +95,22 @@ class GenerateOptions:
             if value not in get_args(kind):
                 raise ValueError(f"{name} must be one of {', '.join(get_args(kind))}: {value!r}")
         require_numbers(bound=self.bound, sliver_dihedral=self.sliver_dihedral, growth=self.growth)
-        if not (np.isfinite(self.bound) and self.bound >= 1.0):
-            raise ValueError(f"bound must be at least 1 and finite, got {self.bound}")
+        if self.bound is not None and not (np.isfinite(self.bound) and self.bound >= 0.6):
+            raise ValueError(f"bound must be at least 0.6 and finite, got {self.bound}")
         if not 0.0 <= self.sliver_dihedral < 70.0:
             raise ValueError(f"sliver_dihedral must be in [0, 70), got {self.sliver_dihedral}")
         if not (np.isfinite(self.growth) and self.growth > 1.0):
             raise ValueError(f"growth must be above 1 and finite, got {self.growth}")
         self.as_remesh_options()  # checks the others
 
-    def as_remesh_options(self, *, max_seconds: float | None = None) -> RemeshOptions:
+    def as_remesh_options(
+        self, *, max_seconds: float | None = None, agreement: bool | Literal["auto"] = "auto"
+    ) -> RemeshOptions:
         """Return what `remesh` is told; the facets of polyhedra are told apart by their tags."""
         return RemeshOptions(
             shape="smooth" if self.shape == "smooth" else "faceted",
             ridge_angle=self.ridge_angle,
+            agreement=agreement,
             max_refinement=None,
             max_vertices=self.max_vertices,
             max_seconds=self.max_seconds if max_seconds is None else max_seconds,

@@ -13,8 +13,6 @@ FLAT_ANGLE = 0.2
 FLATNESS = 1e-6
 """The largest distance of a point from the plane of its facet, in diagonals of the surface."""
 
-_ROUNDING = float(np.finfo(np.float32).eps)
-
 
 def planar_facets(
     points: Floats,
@@ -27,9 +25,8 @@ def planar_facets(
     """Return the facet of each triangle: neighbours of one tag that lie in one plane.
 
     A facet grows from its largest triangle, across edges between exactly two triangles, as long as
-    these are planar with that first one. Triangles so narrow that the rounding of coordinates to
-    single precision may tilt them are taken whatever their angle is; those without an area are
-    facets of their own.
+    these are planar with that first one. Triangles so narrow that the rounding of coordinates may
+    tilt them are taken whatever their angle is; those without an area are facets of their own.
 
     Parameters
     ----------
@@ -58,8 +55,15 @@ def planar_facets(
         tags,
         degrees=flat_angle,
         distance=flatness * diagonal(used),
-        rounding=_ROUNDING * float(np.abs(used).max()),
+        rounding=_precision(used) * float(np.abs(used).max()),
     )
+
+
+def _precision(coordinates: Floats) -> float:
+    """Return the relative precision of coordinates: single precision may be stored as double."""
+    with np.errstate(over="ignore"):
+        is_single = np.array_equal(coordinates, coordinates.astype(np.float32))
+    return float(np.finfo(np.float32 if is_single else np.float64).eps)
 
 
 def diagonal(points: Floats) -> float:

@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike
 from ..base.arrays import Floats, Ints
 from ..meshes.svg import drawing_of
 from ..metric.base.told import Told
+from ..objects import AnyMesh, as_mesh
 from .borders import borders_of
 from .facet_loops import FacetLoops, Loops
+from .of_mesh import MeshBorder
 from .planar_facets import FLAT_ANGLE, FLATNESS, diagonal, planar_facets
 from .plc_arrays import (
     Names,
@@ -25,6 +27,7 @@ from .plc_arrays import (
     as_regions,
     as_rows,
     as_tags,
+    require_different,
     require_in_range,
 )
 from .region import Region
@@ -179,11 +182,43 @@ class PLC(Told):
         if places.shape[1] != 3:
             raise ValueError("a surface has points (n, 3)")
         require_in_range("triangles", rows, len(places))
+        require_different(rows)
         given = as_tags(tags, "tags", len(rows))
         owners = planar_facets(places, rows, given, flat_angle=flat_angle, flatness=flatness)
         first = np.unique(owners, return_index=True)[1]
         facets = SurfaceFacets(places, rows, owners)
         return cls(places, facets=facets, facet_tags=given[first], **others)
+
+    @classmethod
+    def from_mesh(
+        cls, mesh: AnyMesh, *, flat_angle: float = FLAT_ANGLE, flatness: float = FLATNESS
+    ) -> PLC:
+        """Return the complex whose facets are those of a mesh, with tags, names and regions.
+
+        Each part of a region, as the facets bound it, has a seed in its largest cell.
+
+        Parameters
+        ----------
+        mesh : Mesh or other mesh object
+        flat_angle, flatness : float
+            See `from_surface`.
+        """
+        border = MeshBorder.of(as_mesh(mesh))
+        if border.points.shape[1] == 2:
+            return cls(
+                border.points,
+                edges=border.facets,
+                edge_tags=border.facet_tags,
+                **border.others,
+            )
+        return cls.from_surface(
+            border.points,
+            border.facets,
+            border.facet_tags,
+            flat_angle=flat_angle,
+            flatness=flatness,
+            **border.others,
+        )
 
     @property
     def dim(self) -> int:

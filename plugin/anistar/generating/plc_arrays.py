@@ -116,6 +116,14 @@ def require_in_range(name: str, indices: AnyArray, n_points: int) -> None:
         )
 
 
+def require_different(triangles: Ints) -> None:
+    """Raise if a triangle has a point twice."""
+    bad = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)
+    if bad.any():
+        at = int(np.argmax(bad))
+        raise ValueError(f"triangles[{at}] has a point twice: {tuple(triangles[at].tolist())}")
+
+
 def _as_floats(given: ArrayLike, name: str) -> Floats:
     array = np.asarray(given)
     if array.dtype.kind not in "biuf":

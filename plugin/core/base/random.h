@@ -7,20 +7,22 @@ namespace anistar {
 
 /// Who draws: no two uses that may draw for one item in one pass have one stream.
 enum class Stream : std::uint64_t {
-  relocate,     ///< better places of a vertex
-  polish,       ///< the same, where only edges become nearer to one
-  pick,         ///< candidates of pick_valid
-  reenter,      ///< where a vertex of a bad cell leaves and enters again
-  repair_facet, ///< what is tried at a facet that fails
-  mend,         ///< places where a star becomes Delaunay
-  pick_site,    ///< candidates of pick_valid for a star set
-  wander,       ///< moves that make nothing worse, when no other helps
+  relocate,          ///< better places of a vertex
+  polish,            ///< the same, where only edges become nearer to one
+  pick,              ///< candidates of pick_valid
+  reenter,           ///< where a vertex of a bad cell leaves and enters again
+  repair_facet,      ///< what is tried at a facet that fails
+  mend,              ///< places where a star becomes Delaunay
+  pick_site,         ///< candidates of pick_valid for a star set
+  wander,            ///< moves that make nothing worse, when no other helps
+  refinement_region, ///< picks of a new point in its refinement region
 };
 
 /// Where a stream begins. The first ones follow the seed, one after another; mend is
 /// further from it than they are (no sum of the bits of its mask, of any signs, is
-/// below 10431), pick_site still further, and wander on the other side of all seeds
-/// below 2^63 - 2. The values are part of the meshes: others make other ones.
+/// below 10431), pick_site and refinement_region still further, and wander on the other
+/// side of all seeds below 2^63 - 2. The values are part of the meshes: others make
+/// other ones.
 [[nodiscard]] constexpr std::uint64_t start_of(Stream stream, std::uint64_t seed) {
   constexpr std::uint64_t mask = 0x5741u;
   switch (stream) {
@@ -30,6 +32,8 @@ enum class Stream : std::uint64_t {
     return seed ^ mask << 16;
   case Stream::wander:
     return ~seed;
+  case Stream::refinement_region:
+    return seed ^ mask << 32;
   default:
     return seed + static_cast<std::uint64_t>(stream);
   }
@@ -37,7 +41,7 @@ enum class Stream : std::uint64_t {
 
 /// Whether all streams of a seed begin apart.
 [[nodiscard]] constexpr bool are_apart(std::uint64_t seed) {
-  for (int one = 0; one <= static_cast<int>(Stream::wander); ++one)
+  for (int one = 0; one <= static_cast<int>(Stream::refinement_region); ++one)
     for (int other = 0; other < one; ++other)
       if (start_of(static_cast<Stream>(one), seed) ==
           start_of(static_cast<Stream>(other), seed))

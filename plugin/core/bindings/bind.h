@@ -25,6 +25,8 @@ void bind_nearest(nb::module_ &module);
 
 void bind_constrained(nb::module_ &module);
 void bind_check_plc(nb::module_ &module);
+void bind_refined(nb::module_ &module);
+void bind_repair(nb::module_ &module);
 
 void bind_supermesh(nb::module_ &module);
 void bind_symmetric_system(nb::module_ &module);
@@ -36,5 +38,6 @@ void bind_facet_shapes(nb::module_ &module);
 void bind_surface(nb::module_ &module);
 
 void bind_facets(nb::module_ &module);
+void bind_plane(nb::module_ &module);
 
 } // namespace anistar::bindings

@@ -17,6 +17,7 @@ NB_MODULE(_core, module) {
   bind_nearest(module);
   bind_constrained(module);
   bind_check_plc(module);
+  bind_repair(module);
   bind_supermesh(module);
   bind_symmetric_system(module);
   bind_remesh_settings(module); // and what is told in their terms
@@ -25,4 +26,6 @@ NB_MODULE(_core, module) {
   bind_facet_shapes(module);
   bind_surface(module);
   bind_facets(module);
+  bind_plane(module);
+  bind_refined(module); // its stop reasons are those of remeshing
 }

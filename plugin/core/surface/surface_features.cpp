@@ -190,6 +190,8 @@ private:
       for (Index v : in_.facets[f])
         box[patch_of(f)].extend(point(v));
     }
+    if (in_.shape.is_faceted())
+      take_mean_planes();
     for (Patch &patch : out_.patches) {
       patch.normal = snapped(patch.normal);
       patch.is_planar = true;
@@ -209,6 +211,30 @@ private:
         patch = out_.facet_patch[patch];
       std::sort(ridge.patches.begin(), ridge.patches.end());
     }
+  }
+
+  /// Of patches that are not quite planar: the plane through the middle of their area,
+  /// on which their points leave the volume as it is but for second order.
+  void take_mean_planes() {
+    const std::size_t n = out_.patches.size();
+    std::vector<Vector<3>> normals(n, Vector<3>::Zero()), middles(n, Vector<3>::Zero());
+    std::vector<double> areas(n, 0);
+    for (std::size_t f = 0; f < in_.facets.size(); ++f) {
+      const auto p = static_cast<std::size_t>(out_.facet_patch[f]);
+      const auto &[a, b, c] = in_.facets[f];
+      const Vector<3> m = normal(f);
+      normals[p] += m.dot(out_.patches[p].normal) < 0 ? -m : m;
+      // from a corner, so that a shift of the whole costs no digits
+      const Vector<3> &from = out_.patches[p].origin;
+      middles[p] +=
+          m.norm() * ((point(a) - from) + (point(b) - from) + (point(c) - from)) / 3;
+      areas[p] += m.norm();
+    }
+    for (std::size_t p = 0; p < n; ++p)
+      if (areas[p] > 0) {
+        out_.patches[p].normal = normals[p];
+        out_.patches[p].origin += middles[p] / areas[p];
+      }
   }
 
   /// A unit vector; one along an axis but for round-off is made so.

@@ -8,6 +8,7 @@ from typing import Any, get_args
 
 from ...base.arrays import Floats
 from ...formats import ReadReport, read, read_metric, read_with_report, write
+from ...generating.surface_files import holds_geometry
 from ...judging.cell_arrays import cell_arrays
 from ...judging.certificate import Certificate, certify
 from ...judging.quality import quality
@@ -16,16 +17,18 @@ from ...meshes.mesh import Mesh
 from ...meshes.validation import validate
 from ...meshes.violations import Violation
 from ...metric import check_metric
-from .. import console
+from .. import console, geometry_check
 from ..files import replaced_inputs, writable, writable_file
 
-SUMMARY = "check a mesh; measure and certify it in a metric"
+SUMMARY = "check a mesh, measure and certify it in a metric; or check a geometry"
 EXAMPLE = "anistar check out.mesh --metric out.sol --reference in.mesh -o figures.vtu"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("input", help="mesh")
+    parser.add_argument(
+        "input", help="mesh; or geometry to be meshed: stl, obj, off, ply, poly, a surface mesh"
+    )
     parser.add_argument(
         "--metric",
         metavar="FILE",
@@ -63,6 +66,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--picture", metavar="FILE", help="draw the mesh, triangles that are not certified in red"
     )
+    parser.add_argument(
+        "--mark",
+        metavar="FILE",
+        help="of a geometry: write the triangles, edges and points that are wrong (.vtu)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -70,6 +78,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     Surface stars are told, and change nothing of that.
     """
+    if holds_geometry(Path(arguments.input)):
+        return geometry_check.run(arguments)
+    if arguments.mark:
+        raise ValueError(f"--mark is for geometry; {arguments.input} is a mesh")
     _check_targets(arguments)
     mesh, _, found = read_with_report(arguments.input)
     reference = read(arguments.reference)[0] if arguments.reference else None

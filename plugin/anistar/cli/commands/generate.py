@@ -6,8 +6,8 @@ import argparse
 from typing import Any
 
 from ...base.errors import FormatError
-from ...formats import read_metric, write
 from ...formats import read as read_mesh
+from ...formats import read_metric, write
 from ...generating.generate import generate
 from ...generating.report import GenerateReport
 from .. import console

@@ -12,9 +12,9 @@ from ...base.arrays import AnyArray, Floats, Longs
 
 def printed(*columns: AnyArray) -> str:
     """Return one line for each row, the columns side by side, doubles with 17 digits."""
-    tables = [column.reshape(len(column), -1) for column in columns]
-    if len(tables[0]) == 0:
+    if len(columns[0]) == 0:
         return ""
+    tables = [column.reshape(len(column), -1) for column in columns]
     formats = ["%d" if t.dtype.kind in "iu" else "%.17g" for t in tables for _ in t.T]
     flat = [values for table in tables for values in table.T.tolist()]
     line = " ".join(formats)

@@ -32,7 +32,7 @@ def read(path: Path) -> RawMesh:
 
 
 def _mesh(data: bytes) -> RawMesh:
-    document, appended, is_raw = _parted(data)
+    document, appended, is_raw = parted(data)
     root = root_of(document)
     if root.tag != "VTKFile" or root.get("type") != "UnstructuredGrid":
         raise ValueError(f"it holds {root.get('type')!r}: save it as an unstructured grid")
@@ -56,7 +56,7 @@ def _mesh(data: bytes) -> RawMesh:
     return raw
 
 
-def _parted(data: bytes) -> tuple[bytes, bytes, bool]:
+def parted(data: bytes) -> tuple[bytes, bytes, bool]:
     """Return the document without its appended data, those, and whether they are raw."""
     found = _APPENDED.search(data)
     if found is None:

@@ -49,8 +49,9 @@ def _summary(problems: Sequence[PLCProblem]) -> str:
     more = [f"{first.alike - 1} more {KINDS[first.kind].several}"] if first.alike > 1 else []
     more += [f"{p.alike} of the kind {p.kind!r}" for p in others]
     counted = f"and {', '.join(more)}; " if more else ""
-    return f"{first.message} ({counted}anistar.check_plc lists them, `anistar check --mark` shows them)"
+    return f"{first.message} ({counted}{_HOW_TO_SEE})"
 
 
+_HOW_TO_SEE = "anistar.check_plc lists them, anistar check --mark bad.vtu shows them"
 _CAUSES = ("crossing", "overlap")
 _ORDER_TOLD = [*_CAUSES, *(kind for kind in KINDS if kind not in _CAUSES)]

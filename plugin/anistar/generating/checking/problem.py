@@ -102,13 +102,8 @@ def _crossing(problem: PLCProblem) -> str:
 
 
 def _near_miss(problem: PLCProblem) -> str:
-    gap = f"{problem.measure:.3g} apart {_place(problem)}"
-    if problem.points:
-        others = [p for p in problem.points[1:]]
-        at = f"point {problem.points[-1]}"
-        del others
-        return f"{_parts(problem)} are {gap}, at {at}"
-    return f"{_parts(problem)} are {gap}"
+    gap = f"{_parts(problem)} are {problem.measure:.3g} apart {_place(problem)}"
+    return f"{gap}, at point {problem.points[-1]}" if problem.points else gap
 
 
 def _open_border(problem: PLCProblem) -> str:

@@ -1,5 +1,6 @@
 #include "bindings/bind.h"
 #include "bindings/support/geometry.h"
+#include "generate/facets/equal_points.h"
 #include "generate/facets/planar_facets.h"
 #include "generate/facets/surface_loops.h"
 #include "generate/facets/triangulated_facets.h"
@@ -58,9 +59,21 @@ nb::tuple loops_of(const Array2<double> &points, const Array2<Index> &triangles,
                         owned(std::move(loops.facet_starts), {n_facets + 1}));
 }
 
+nb::object equal_points(const Array2<double> &points) {
+  std::vector<Index> first;
+  {
+    nb::gil_scoped_release release;
+    first = first_at_place(points_of<3>(points));
+  }
+  const std::size_t n = first.size();
+  return nb::cast(owned(std::move(first), {n}));
+}
+
 } // namespace
 
 void bind_facets(nb::module_ &module) {
+  module.def("first_at_place", &equal_points, nb::arg("points").noconvert(),
+             "Of each point the first one that is exactly where it is.");
   module.def(
       "triangulated_facets", &triangulated, nb::arg("points").noconvert(),
       nb::arg("indices").noconvert(), nb::arg("loop_starts").noconvert(),

@@ -5,6 +5,7 @@
 #include "generate/checking/contact.h"
 #include "generate/checking/gap.h"
 #include "generate/checking/pieces.h"
+#include "generate/checking/separation.h"
 #include "search/box_tree.h"
 
 #include <algorithm>
@@ -147,13 +148,16 @@ private:
     }
     const BoxTree<3> tree(boxes);
     const Surroundings around(pieces, plc_.points.size());
+    const Separation separation(plc_.points, pieces, reach());
     std::vector<Found> found;
     std::vector<Index> met;
     monitor_.enter("check");
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       met.clear();
       tree.meeting(boxes[k], [&](Index j) {
-        if (std::cmp_greater(j, k))
+        if (std::cmp_greater(j, k) &&
+            (n_shared(pieces[k], pieces[j]) > 0 ||
+             !separation.is_certain(static_cast<Index>(k), j)))
           met.push_back(j);
         return true;
       });
@@ -229,7 +233,7 @@ private:
     return -2 - piece;
   }
   [[nodiscard]] std::array<Index, 3> facets_of(const Pair &pair) const {
-    const auto [a, b] = std::minmax(owner(pair[0]), owner(pair[1]));
+    const auto [a, b] = std::minmax({owner(pair[0]), owner(pair[1])});
     return {a, b, none};
   }
 

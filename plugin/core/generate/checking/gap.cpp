@@ -3,7 +3,6 @@
 #include "search/nearest_on.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace anistar::generate {
 namespace {
@@ -16,7 +15,7 @@ public:
       : points_(points), pieces_(pieces), around_(around), reach_(reach) {}
 
   std::optional<Gap> between(const Piece &a, const Piece &b) {
-    if (n_shared(a, b) > 1 || are_planes_apart(a, b) || are_planes_apart(b, a))
+    if (n_shared(a, b) > 1)
       return std::nullopt;
     look_from_points(a, b);
     look_from_points(b, a);
@@ -34,23 +33,6 @@ private:
   std::optional<Gap> best_;
 
   [[nodiscard]] const Vector<3> &at(Index v) const { return points_[v]; }
-
-  /// Whether all of p beyond shared points is clearly off the plane of q on one side,
-  /// by rounded distances: what is close to it is looked at below.
-  [[nodiscard]] bool are_planes_apart(const Piece &p, const Piece &q) const {
-    if (!q.is_triangle() || n_shared(p, q) > 0)
-      return false;
-    const Vector<3> &o = at(q.corners[0]);
-    const Vector<3> normal = (at(q.corners[1]) - o).cross(at(q.corners[2]) - o);
-    const double margin = 2 * reach_ * normal.norm();
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Index v : p.points()) {
-      const double height = normal.dot(at(v) - o);
-      low = std::min(low, height);
-      high = std::max(high, height);
-    }
-    return low > margin || high < -margin;
-  }
 
   void look_from_points(const Piece &p, const Piece &q) {
     for (const Index v : p.points()) {

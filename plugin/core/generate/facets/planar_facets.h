@@ -22,7 +22,8 @@ struct Planarity {
 ///
 /// A facet grows from its largest triangle across edges between exactly two triangles,
 /// both of one tag, as long as these are planar with that first one; measured against
-/// their neighbours alone the facets of a fine sphere would be one. The largest
+/// their neighbours alone the facets of a fine sphere would be one. Then it grows once
+/// more from the mean plane of what was found, as long as that takes more. The largest
 /// triangles of all start first.
 [[nodiscard]] std::vector<Index> planar_facets(std::span<const Vector<3>> points,
                                                std::span<const Facet<3>> triangles,

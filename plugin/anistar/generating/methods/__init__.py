@@ -1,0 +1,1 @@
+"""What may follow the constrained mesh of a geometry."""

@@ -1,0 +1,1 @@
+"""What a file with geometry says, and the complex that is made of it."""

@@ -1,0 +1,1 @@
+"""Surfaces in formats of meshes, and in objects of other packages."""

@@ -1,0 +1,1 @@
+"""The complexes of TetGen and the outlines of Triangle."""

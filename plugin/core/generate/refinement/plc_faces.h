@@ -1,0 +1,92 @@
+#pragma once
+// The faces of the complex and how they meet: which are disjoint, which pairs of facets
+// form an acute dihedral angle. All of it is combinatorial: a point is on a facet
+// because it was put there, not because its coordinates say so.
+
+#include "generate/tetrahedralisation.h"
+#include "mesh/adjacency.h"
+
+#include <span>
+#include <vector>
+
+namespace anistar::generate {
+
+/// The face of the complex whose relative interior holds a vertex of the mesh.
+struct Carrier {
+  enum class Kind : std::uint8_t { vertex, segment, facet, space };
+  Kind kind = Kind::space;
+  Index face = none; ///< the vertex itself, the segment, the facet
+
+  [[nodiscard]] bool is_on_segment() const { return kind <= Kind::segment; }
+  [[nodiscard]] bool is_on_facet() const { return kind <= Kind::facet; }
+};
+
+/// Lists of indices, one after another.
+class IndexLists {
+public:
+  using Pair = std::array<Index, 2>;
+
+  IndexLists() = default;
+  /// The second entries of the pairs under their first ones, sorted, each once.
+  IndexLists(std::vector<Pair> pairs, std::size_t n_lists);
+
+  [[nodiscard]] std::span<const Index> operator[](Index list) const {
+    return std::span(entries_).subspan(begin_[list], begin_[list + 1] - begin_[list]);
+  }
+  [[nodiscard]] bool contains(Index list, Index entry) const;
+
+private:
+  std::vector<std::size_t> begin_{0};
+  std::vector<Index> entries_;
+};
+
+/// Where the walls of a facet are looked at from, to decide left and right on it.
+struct Projection {
+  std::uint8_t axis = 2; ///< the coordinate that is left out
+
+  [[nodiscard]] Vector<2> operator()(const Vector<3> &x) const {
+    return {x[(axis + 1) % 3], x[(axis + 2) % 3]};
+  }
+};
+
+struct WalledMesh;
+
+class PlcFaces {
+public:
+  /// @pre the mesh is the constrained Delaunay tetrahedralisation that nothing has been
+  /// inserted into
+  explicit PlcFaces(const WalledMesh &mesh);
+
+  /// The facets whose closure holds what the carrier holds, sorted.
+  [[nodiscard]] std::span<const Index> facets_of(const Carrier &carrier) const;
+  [[nodiscard]] bool is_on(const Carrier &carrier, Index facet) const;
+  /// Whether a face has no point in common with a facet.
+  [[nodiscard]] bool are_disjoint(const Carrier &carrier, Index facet) const;
+  /// Whether two facets share a segment at which the domain between them has an angle
+  /// below acute_dihedral.
+  [[nodiscard]] bool are_acute(Index facet, Index other) const {
+    return acute_.contains(facet, other);
+  }
+  /// Whether a vertex is on a facet that forms an acute pair with this one, and not on
+  /// this one itself.
+  [[nodiscard]] bool is_across_acute_angle(const Carrier &carrier, Index facet) const;
+  /// Whether two vertices are on two facets of an acute pair, neither on both.
+  [[nodiscard]] bool join_acute_facets(const Carrier &one, const Carrier &other) const;
+
+  [[nodiscard]] Projection projection(Index facet) const { return projections_[facet]; }
+  [[nodiscard]] std::size_t n_acute_pairs() const { return n_acute_pairs_; }
+  /// The two ends of a segment.
+  [[nodiscard]] Segment ends(Index segment) const { return ends_[segment]; }
+
+private:
+  IndexLists vertex_facets_, segment_facets_, facet_vertices_, acute_;
+  std::vector<Projection> projections_;
+  std::vector<Segment> ends_;
+  std::size_t n_acute_pairs_ = 0;
+
+  void find_incidences(const WalledMesh &mesh);
+  void find_projections(const WalledMesh &mesh);
+  void find_acute_pairs(const WalledMesh &mesh);
+};
+
+} // namespace anistar::generate

@@ -1,0 +1,409 @@
+#include "generate/refinement/rules.h"
+
+#include <algorithm>
+
+namespace anistar::generate {
+namespace {
+
+/// Where the centre itself has no cavity that its star fills, points near to it are
+/// tried.
+constexpr PickRule centre_first{
+    .delta = .05, .n_picks = 6, .must_avoid_slivers = false};
+constexpr int most_tries_of_edge = 5;
+/// As a fraction of the points, inverted.
+constexpr std::size_t growth_before_retry = 50;
+
+double diagonal_of(const std::vector<Vector<3>> &points) {
+  Vector<3> low = points.front(), high = low;
+  for (const Vector<3> &x : points) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  return (high - low).norm();
+}
+
+SizeField size_field(const Tetrahedralisation &input, const Sizes &sizes) {
+  if (sizes.empty())
+    return {};
+  return sizes.size() == 1 ? SizeField(sizes.front()) : SizeField(input, sizes);
+}
+
+} // namespace
+
+Rules::Rules(const Tetrahedralisation &input, const Sizes &sizes,
+             const RefinementSettings &settings)
+    : settings_(settings), mesh_(input), faces_(mesh_), clusters_(mesh_),
+      size_(size_field(input, sizes)), pick_rule_(centre_first),
+      floor_(settings.shortest_edge * diagonal_of(input.points)),
+      insertions_(&record_.refinement) {
+  record_.clusters = clusters_.n_clusters();
+  record_.acute_pairs = faces_.n_acute_pairs();
+}
+
+void Rules::queue_all() {
+  for (const auto &[edge, segment] : mesh_.sorted_subsegments())
+    queues_.edges.push({edge});
+  for (std::size_t c = 0; c < mesh_.cells.size(); ++c)
+    if (mesh_.is_alive(static_cast<Index>(c))) {
+      consider_walls(static_cast<Index>(c));
+      consider_cell(static_cast<Index>(c));
+    }
+}
+
+/// Rule 1: an encroached constrained edge.
+bool Rules::apply_rule_1() {
+  std::optional<WaitingEdge> waiting = queues_.edges.pop();
+  if (!waiting && try_put_off_edges())
+    waiting = queues_.edges.pop();
+  if (!waiting)
+    return false;
+  const Segment &e = waiting->edge;
+  if (!exists(e) || !(is_encroached(e) || is_long(e)))
+    return true;
+  if (refine_edge(e, {.r_g = 0}) == Outcome::refused &&
+      waiting->tries < most_tries_of_edge)
+    put_off_.push_back({e, waiting->tries + 1});
+  return true;
+}
+
+/// Where the point of one edge encroaches upon another, as with long ones side by side,
+/// neither may have a cavity that its star fills before the other, or one further on,
+/// is split. So those that failed are tried again when others have been.
+bool Rules::try_put_off_edges() {
+  if (put_off_.empty() || insertions_->edges == edges_at_last_try_)
+    return false;
+  edges_at_last_try_ = insertions_->edges;
+  blocked_at_.clear();
+  for (const WaitingEdge &waiting : put_off_)
+    queues_.edges.push(waiting);
+  put_off_.clear();
+  return true;
+}
+
+/// Rule 2: an encroached constrained facet. Terminator: p, the encroaching vertex, is a
+/// vertex of the complex, or on a face disjoint from F, or r_v > r_p.
+bool Rules::apply_rule_2() {
+  const std::optional<WaitingFacet> waiting = queues_.facets.pop();
+  if (!waiting)
+    return false;
+  const HalfFacet f = mesh_.half_facet(waiting->cell, waiting->vertices);
+  if (!f.exists() || mesh_.wall(f) == none)
+    return true;
+  const bool by_size = is_large(f);
+  const Index p = encroaching_apex(f);
+  if (p == none && !by_size)
+    return true;
+  Cause cause{.r_g = 0, .needs_no_longer = by_size};
+  if (p != none) {
+    const Carrier &carrier = mesh_.carriers[p];
+    cause.r_g = mesh_.insertion_radius[p];
+    cause.frees_facet = !carrier.is_on_facet() ||
+                        carrier.kind == Carrier::Kind::vertex ||
+                        faces_.are_disjoint(carrier, mesh_.wall(f));
+  }
+  if (conditionally_refine_facet(f, cause) == Outcome::elsewhere &&
+      mesh_.half_facet(waiting->cell, waiting->vertices).exists())
+    queues_.facets.push(*waiting);
+  return true;
+}
+
+/// Rule 3: a bad tetrahedron, that of the largest ratio first.
+bool Rules::apply_rule_3() {
+  const std::optional<Index> t = queues_.cells.pop(mesh_);
+  if (!t)
+    return false;
+  if (conditionally_refine_tet(*t) == Outcome::elsewhere && mesh_.is_alive(*t))
+    consider_cell(*t);
+  return true;
+}
+
+/// refine-edge(e). Terminator: if it is a rejected point that encroaches, only if
+/// min r_w > r_g over what is inserted then.
+Outcome Rules::refine_edge(const Segment &edge, const Cause &cause) {
+  const Segment e{std::min(edge[0], edge[1]), std::max(edge[0], edge[1])};
+  const Index segment = mesh_.segment_of(e[0], e[1]);
+  const double r_e = .5 * (mesh_.points[e[1]] - mesh_.points[e[0]]).norm();
+  if (cause.r_rejected > 0) {
+    const double least = clusters_.least_insertion_radius(mesh_, segment, e[0], e[1]);
+    if (!cause.needs_no_longer && least <= cause.r_g)
+      return refuse(Refusal::edge_not_longer);
+    if (!record_.edge_lemma.note(r_e / cause.r_rejected))
+      return refuse(Refusal::against_lemma);
+  }
+  if (r_e < floor_)
+    return refuse(Refusal::too_short);
+  if (is_blocked(e))
+    return refuse(Refusal::no_cavity);
+  const double middle = clusters_.split_fraction(mesh_, segment, e[0], e[1]);
+  const bool is_at_cluster = middle != .5;
+  Picks picks(pick_rule_, settings_.seed, n_regions_++);
+  BestPick best;
+  while (picks.has_next()) {
+    const double offset = .5 * picks.next(1)[0];
+    const Site site = edge_site(e, is_at_cluster ? middle : middle + offset);
+    if (cavity_.gather(mesh_, site) == CavityFlaw::no_flaw && takes(site, r_e, best))
+      return insert(site);
+    if (is_at_cluster)
+      break;
+  }
+  if (!best.site)
+    blocked_at_[e] = mesh_.points.size();
+  return insert_best(best, cause, Refusal::no_cavity);
+}
+
+/// An edge that had no cavity has none before enough has changed.
+bool Rules::is_blocked(const Segment &e) const {
+  const auto found = blocked_at_.find(e);
+  return found != blocked_at_.end() &&
+         mesh_.points.size() < found->second + found->second / growth_before_retry;
+}
+
+/// conditionally-refine-facet(f): c = circumcenter(f); if c encroaches a constrained
+/// edge e, refine-edge(e); else insert(c), under Terminator's rule 2.
+Outcome Rules::conditionally_refine_facet(HalfFacet f, const Cause &cause) {
+  const Ball ball = diametral_ball_of(f);
+  const double r_f = ball.radius;
+  if (cause.r_rejected > 0 && !record_.facet_lemma.note(r_f / cause.r_rejected))
+    return refuse(Refusal::against_lemma);
+  if (r_f < floor_)
+    return refuse(Refusal::too_short);
+  const Facet<3> v = mesh_.facet(f);
+  const Vector<3> along = (mesh_.points[v[1]] - mesh_.points[v[0]]).normalized();
+  const Vector<3> across =
+      (mesh_.points[v[2]] - mesh_.points[v[0]]).cross(along).cross(along).normalized();
+  Picks picks(pick_rule_, settings_.seed, n_regions_++);
+  BestPick best;
+  while (picks.has_next()) {
+    const Vector<3> offset = picks.next(2);
+    const Vector<3> c = ball.centre + r_f * (offset[0] * along + offset[1] * across);
+    Cause rejected = cause;
+    rejected.r_rejected = r_f * (1 - offset.norm());
+    const FacetWalk walk = walk_in_facet(mesh_, faces_, f, c);
+    if (walk.is_lost)
+      continue;
+    if (!walk.has_arrived()) {
+      if (!encroaches(c, mesh_.points[walk.border[0]], mesh_.points[walk.border[1]]))
+        return refuse(Refusal::hidden_by_edge);
+      const Outcome outcome = refine_edge(walk.border, rejected);
+      return outcome == Outcome::refused ? outcome : Outcome::elsewhere;
+    }
+    const Site site = facet_site(walk.wall, put_on_wall(mesh_, faces_, walk.wall, c));
+    if (cavity_.gather(mesh_, site) != CavityFlaw::no_flaw ||
+        !cavity_.contains(f.cell()))
+      continue;
+    find_encroached_edges(site.x);
+    if (!edges_.empty())
+      return refine_encroached_edges(rejected);
+    const double r_v = cavity_.nearest_vertex(mesh_, site.x);
+    if (!cause.needs_no_longer && !cause.frees_facet && r_v <= cause.r_g)
+      return refuse(Refusal::facet_not_longer);
+    if (takes(site, r_f, best))
+      return insert(site);
+  }
+  return insert_best(best, cause, Refusal::no_cavity);
+}
+
+/// conditionally-refine-tet(t): c = circumcenter(t); if c encroaches a constrained edge
+/// e, refine-edge(e); else if it encroaches a constrained facet f,
+/// conditionally-refine-facet(f); else insert(c).
+Outcome Rules::conditionally_refine_tet(Index t) {
+  const CellShape shape = shape_of(t);
+  const bool by_size = is_large(shape);
+  const bool by_ratio = shape.ratio() > settings_.bound;
+  if (!by_size)
+    if (const std::optional<Refusal> refusal = acute_refusal(t, shape))
+      return refuse(*refusal);
+  const double r_t = shape.ball.radius;
+  Cause cause{.r_g = mesh_.insertion_radius[shape.shortest_edge[1]],
+              .needs_no_longer = by_size || !by_ratio,
+              .must_improve = !by_size && !by_ratio};
+  Picks picks(pick_rule_, settings_.seed, n_regions_++);
+  BestPick best;
+  while (picks.has_next()) {
+    const Vector<3> offset = picks.next(3);
+    const Vector<3> c = shape.ball.centre + r_t * offset;
+    cause.r_rejected = r_t * (1 - offset.norm());
+    const SpaceWalk walk = walk_in_space(mesh_, t, c);
+    if (walk.wall.exists())
+      return refine_encroached_facets({&walk.wall, 1}, c, cause);
+    if (walk.cell == none)
+      continue;
+    const Site site{c, {}, {walk.cell}, {}, {none, none}, false};
+    if (cavity_.gather(mesh_, site) != CavityFlaw::no_flaw || !cavity_.contains(t))
+      continue;
+    find_encroached_edges(c);
+    if (!edges_.empty())
+      return refine_encroached_edges(cause);
+    if (const auto facets = encroached_facets(c); !facets.empty())
+      return refine_encroached_facets(facets, c, cause);
+    if (takes(site, r_t, best))
+      return insert(site);
+  }
+  return insert_best(best, cause, Refusal::no_cavity);
+}
+
+/// What was measured to be necessary beside Terminator's rules: the shape of such
+/// tetrahedra is that of the input.
+std::optional<Refusal> Rules::acute_refusal(Index t, const CellShape &shape) const {
+  if (faces_.n_acute_pairs() == 0)
+    return {};
+  const auto join = [&](Index u, Index v) {
+    return faces_.join_acute_facets(mesh_.carriers[u], mesh_.carriers[v]);
+  };
+  if (join(shape.shortest_edge[0], shape.shortest_edge[1]))
+    return Refusal::acute_shortest_edge;
+  if (shape.ratio() <= settings_.bound)
+    return {}; // a sliver, which is refined only where that helps
+  const Cell<3> &cell = mesh_.cells[t];
+  if (!std::all_of(cell.begin(), cell.end(),
+                   [&](Index v) { return mesh_.carriers[v].is_on_facet(); }))
+    return {};
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j)
+      if (join(cell[i], cell[j]))
+        return Refusal::acute_facets;
+  return {};
+}
+
+/// The subsegments of the cavity that a point encroaches upon.
+void Rules::find_encroached_edges(const Vector<3> &p) {
+  cavity_.subsegments(mesh_, edges_);
+  std::erase_if(edges_, [&](const Segment &e) {
+    return !encroaches(p, mesh_.points[e[0]], mesh_.points[e[1]]);
+  });
+}
+
+std::vector<HalfFacet> Rules::encroached_facets(const Vector<3> &p) const {
+  std::vector<HalfFacet> out;
+  for (HalfFacet h : cavity_.boundary())
+    if (mesh_.wall(h) != none && encroaches(p, diametral_ball_of(h)))
+      out.push_back(h);
+  return out;
+}
+
+Outcome Rules::refine_encroached_edges(const Cause &cause) {
+  const std::vector<Segment> edges = edges_;
+  for (const Segment &e : edges)
+    if (refine_edge(e, cause) != Outcome::refused)
+      return Outcome::elsewhere;
+  return Outcome::refused;
+}
+
+Outcome Rules::refine_encroached_facets(std::span<const HalfFacet> facets,
+                                        const Vector<3> &p, const Cause &cause) {
+  bool is_hidden = true;
+  for (HalfFacet f : facets) {
+    const HalfFacet g = facet_below(f, p);
+    if (!encroaches(p, diametral_ball_of(g)))
+      continue;
+    is_hidden = false;
+    if (conditionally_refine_facet(g, cause) != Outcome::refused)
+      return Outcome::elsewhere;
+  }
+  return is_hidden ? refuse(Refusal::hidden_by_facet) : Outcome::refused;
+}
+
+/// The projection lemma: of the walls of F that which holds the projection of the
+/// encroaching point, which encroaches upon it as well.
+HalfFacet Rules::facet_below(HalfFacet f, const Vector<3> &p) const {
+  const Facet<3> v = mesh_.facet(f);
+  const Vector<3> &a = mesh_.points[v[0]];
+  const Vector<3> n = (mesh_.points[v[1]] - a).cross(mesh_.points[v[2]] - a);
+  const Vector<3> projection = p - n * (n.dot(p - a) / n.squaredNorm());
+  const FacetWalk walk = walk_in_facet(mesh_, faces_, f, projection);
+  return walk.has_arrived() && encroaches(p, diametral_ball_of(walk.wall)) ? walk.wall
+                                                                           : f;
+}
+
+Site Rules::edge_site(const Segment &e, double fraction) {
+  const Vector<3> &a = mesh_.points[e[0]], &b = mesh_.points[e[1]];
+  Site site{(1 - fraction) * a + fraction * b,
+            {Carrier::Kind::segment, mesh_.segment_of(e[0], e[1])},
+            {},
+            {},
+            e,
+            true};
+  mesh_.cells_around(e[0], e[1], site.seeds);
+  for (Index c : site.seeds)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index v = mesh_.cells[c][i];
+      if (v != e[0] && v != e[1] && mesh_.walls[c][i] != none)
+        site.open_facets.push_back(mesh_.walls[c][i]);
+    }
+  std::sort(site.open_facets.begin(), site.open_facets.end());
+  site.open_facets.erase(std::unique(site.open_facets.begin(), site.open_facets.end()),
+                         site.open_facets.end());
+  return site;
+}
+
+Site Rules::facet_site(HalfFacet f, const Vector<3> &x) const {
+  const Index facet = mesh_.wall(f);
+  Site site{x, {Carrier::Kind::facet, facet}, {f.cell()}, {facet}, {none, none}, false};
+  if (const HalfFacet other = mesh_.opposite(f); other.exists())
+    site.seeds.push_back(other.cell());
+  return site;
+}
+
+/// Whether a point may be inserted at once. If not for a small sliver alone, it is
+/// remembered where it is the best one so far.
+/// @pre the cavity of the site has been gathered
+bool Rules::takes(const Site &site, double r_tau, BestPick &best) {
+  if (cavity_.nearest_vertex(mesh_, site.x) < floor_) {
+    ++record_.of(Refusal::too_short);
+    return false;
+  }
+  if (!pick_rule_.must_avoid_slivers)
+    return true;
+  const double cosine = small_sliver_cosine(site, r_tau);
+  if (cosine <= pick_rule_.sliver_cosine)
+    return true;
+  if (cosine < best.cosine)
+    best = {site, cosine};
+  return false;
+}
+
+/// Where no pick avoids slivers, the least bad one: a rule that asks for a point gets
+/// it, a sliver only if the angles become better.
+Outcome Rules::insert_best(const BestPick &best, const Cause &cause,
+                           Refusal otherwise) {
+  if (!best.site)
+    return refuse(otherwise);
+  if (cavity_.gather(mesh_, *best.site) != CavityFlaw::no_flaw)
+    return refuse(otherwise);
+  if (cause.must_improve && best.cosine >= cavity_cosine())
+    return refuse(Refusal::no_pick);
+  return insert(*best.site);
+}
+
+/// insert(c), and what becomes encroached, large or bad by it is queued.
+/// @pre the cavity of the site has been gathered
+Outcome Rules::insert(const Site &site) {
+  find_encroached_edges(site.x);
+  record_.enlarged_cavities += cavity_.is_enlarged();
+  record_.reduced_cavities += cavity_.is_reduced();
+  const Index near = mesh_.cells[cavity_.cells().front()][0];
+  const Index v = cavity_.fill(mesh_, site);
+  size_.add_vertex(site.x, near);
+  for (const Segment &e : edges_)
+    if (e != site.split_edge)
+      queues_.edges.push({e});
+  switch (site.carrier.kind) {
+  case Carrier::Kind::segment:
+    ++insertions_->edges;
+    for (Index end : site.split_edge)
+      queues_.edges.push({{std::min(end, v), std::max(end, v)}});
+    break;
+  case Carrier::Kind::facet:
+    ++insertions_->facets;
+    break;
+  default:
+    ++insertions_->tetrahedra;
+  }
+  for (Index c : cavity_.new_cells()) {
+    consider_walls(c);
+    consider_cell(c);
+  }
+  return Outcome::inserted;
+}
+
+} // namespace anistar::generate
