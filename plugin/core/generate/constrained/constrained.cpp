@@ -1,12 +1,12 @@
 #include "generate/constrained/constrained.h"
 
 #include "generate/constrained/complex.h"
-#include "generate/constrained/delaunay.h"
-#include "generate/constrained/edge_recovery.h"
-#include "generate/constrained/facet_recovery.h"
-#include "generate/constrained/flat_cells.h"
+#include "generate/constrained/flat/flat_cells.h"
+#include "generate/constrained/mesh/delaunay.h"
 #include "generate/constrained/output.h"
-#include "generate/constrained/regions.h"
+#include "generate/constrained/recovery/edge_recovery.h"
+#include "generate/constrained/recovery/facet_recovery.h"
+#include "generate/constrained/regions/regions.h"
 
 #include <algorithm>
 #include <memory>
