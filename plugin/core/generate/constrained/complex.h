@@ -1,9 +1,9 @@
 #pragma once
 // What the steps of a constrained Delaunay tetrahedralisation work on.
 
-#include "generate/constrained/exact_points.h"
-#include "generate/constrained/facet_triangles.h"
-#include "generate/constrained/ghost_mesh.h"
+#include "generate/constrained/facets/facet_triangles.h"
+#include "generate/constrained/mesh/ghost_mesh.h"
+#include "generate/constrained/points/exact_points.h"
 
 namespace anistar::generate {
 

@@ -1,12 +1,12 @@
 #include "generate/constrained/constrained.h"
 
 #include "generate/constrained/complex.h"
-#include "generate/constrained/delaunay.h"
-#include "generate/constrained/edge_recovery.h"
-#include "generate/constrained/facet_recovery.h"
-#include "generate/constrained/flat_cells.h"
+#include "generate/constrained/flat/flat_cells.h"
+#include "generate/constrained/mesh/delaunay.h"
 #include "generate/constrained/output.h"
-#include "generate/constrained/regions.h"
+#include "generate/constrained/recovery/edge_recovery.h"
+#include "generate/constrained/recovery/facet_recovery.h"
+#include "generate/constrained/regions/regions.h"
 
 #include <algorithm>
 #include <memory>
@@ -93,6 +93,7 @@ Constrained constrained_tetrahedralisation(const Plc &plc,
                         .remove(settings.facets_may_flip, monitor);
   counts.peeled = flat.peeled;
   counts.removed = flat.swapped;
+  counts.moved = flat.moved;
   counts.flat_left = flat.left;
   counts.predicates = points.counts().asked;
   counts.exact_predicates = points.counts().exact;

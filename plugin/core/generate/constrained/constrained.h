@@ -2,7 +2,7 @@
 // The constrained Delaunay tetrahedralisation of a piecewise linear complex.
 
 #include "base/monitor.h"
-#include "generate/constrained/region_rule.h"
+#include "generate/constrained/regions/region_rule.h"
 #include "generate/tetrahedralisation.h"
 
 namespace anistar::generate {

@@ -1,6 +1,6 @@
 #include "generate/constrained/output.h"
 
-#include "generate/constrained/regions.h"
+#include "generate/constrained/regions/regions.h"
 
 #include <algorithm>
 
