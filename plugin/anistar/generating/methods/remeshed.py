@@ -13,16 +13,13 @@ from ...remeshing.report import RemeshReport
 from ..first_mesh import FirstMesh
 from ..options import GenerateOptions
 from ..sizes.wishes import Wish
-from .stages import Clock, Stage
+from .stages import FIRST_LOOK, Clock, Stage
 
 #: A wish that is not uniform is looked at on so many meshes at most.
 MOST_PASSES = 6
 
 #: Relative change of the number of points below which the last mesh has all that is wished for.
 SETTLED = 0.05
-
-#: Edges per diagonal of the mesh on which a wish is seen first.
-FIRST_LOOK = 20.0
 
 
 def remeshed(first: FirstMesh, wish: Wish, options: GenerateOptions, clock: Clock) -> Stage:
@@ -56,6 +53,8 @@ def remeshed(first: FirstMesh, wish: Wish, options: GenerateOptions, clock: Cloc
 
 
 def _is_last(wish: Wish, report: RemeshReport, before: int, mesh: Mesh, number: int) -> bool:
+    if number == 0 and wish.may_surprise and report.stop_reason == "max_vertices":
+        return False  # what was to be seen closely may be less than that look
     if wish.is_settled or not report.converged:
         return True
     return number > 0 and abs(mesh.n_points - before) <= SETTLED * before

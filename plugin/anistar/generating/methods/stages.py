@@ -14,6 +14,9 @@ from ...remeshing.report import RemeshReport
 #: What a step that begins after its time gets, in seconds: it stops at its first look.
 NO_TIME = 1e-3
 
+#: Edges per diagonal of the mesh on which a wish is seen first.
+FIRST_LOOK = 20.0
+
 
 @dataclass(frozen=True, kw_only=True)
 class Stage:

@@ -55,7 +55,7 @@ def wish_for(
     largest = diameter(first.mesh) / EDGES_PER_DIAGONAL if is_free else np.inf
     if callable(given):
         wishes.append(Evaluated(given))
-    elif isinstance(given, tuple):
+    elif isinstance(given, tuple) and not all(map(np.isscalar, given)):
         wishes.append(carried_from(given))
     elif given is not None:
         values = np.asarray(given, dtype=np.float64)
@@ -72,8 +72,8 @@ def wish_for(
         on_surface = np.minimum(on_surface, local_widths(shape))
     if options.size_at:
         # meshes in between have numbers of facets for tags where remeshing goes by these
-        is_numbered = first.plc.dim == 3 and (
-            options.method == "refine" or options.shape == "polyhedron"
+        is_numbered = options.method == "refine" or (
+            first.plc.dim == 3 and options.shape == "polyhedron"
         )
         tagged = first.tagged if is_numbered else _as_it_is
         wishes.append(Named(tagged, options.size_at, options.growth))
@@ -83,6 +83,8 @@ def wish_for(
         far = max([*finite.tolist(), *in_regions.values()], default=largest)
         largest = min(largest, max(far, diameter(first.mesh)))
         wishes.append(Surrounding(first.mesh, on_surface, in_regions, largest, options.growth))
+    if not wishes and options.method == "remesh":  # all sizes that are given are infinite
+        wishes.append(Uniform(diameter(first.mesh) / EDGES_PER_DIAGONAL))
     return Together(wishes) if len(wishes) > 1 else wishes[0] if wishes else None
 
 
