@@ -9,6 +9,8 @@ with eigenvalue ratios to 1e18, domains of needles far from the origin, budgets 
 fails unless every case gives a correct mesh or an error that names place and value.
 ``python tests/fuzz/run.py --files --cases 4000`` damages files of every format and reads them: each
 has to be refused with its name, or give what it held.
+``python tests/fuzz/run.py --generate --cases 500`` makes first meshes of random complexes by every
+method: each is right in areas, volumes and bounds, and what is no valid complex is named.
 """
 
 import argparse
@@ -26,10 +28,10 @@ import numpy as np
 from fuzz_tables import table_lines, verdict_table_lines
 from fuzz_workers import outcomes
 
-MEMORY = {"harsh": 6 * 2**30, "files": 3 * 2**30}
+MEMORY = {"harsh": 6 * 2**30, "files": 3 * 2**30, "generate": 6 * 2**30}
 """Bytes that a worker may map: a case that asks for more must not take the machine with it."""
 
-TIMEOUT = {"": 60.0, "harsh": 150.0, "files": 20.0}
+TIMEOUT = {"": 60.0, "harsh": 150.0, "files": 20.0, "generate": 60.0}
 """Seconds for a case."""
 
 
@@ -39,6 +41,10 @@ def case_functions(dim, *, mode, largest):
         from file_cases import make_file_case, run_file_case
 
         return make_file_case, run_file_case
+    if mode == "generate":
+        from generate_cases import make_generate_case, run_generate_case
+
+        return make_generate_case, run_generate_case
     if mode == "harsh":
         from harsh_cases import make_harsh_case
         from harsh_judgement import run_harsh_case
@@ -135,6 +141,7 @@ def parsed(arguments=None):
     parser.add_argument("--dim", type=int, default=2, choices=(2, 3))
     parser.add_argument("--harsh", dest="mode", action="store_const", const="harsh", default="")
     parser.add_argument("--files", dest="mode", action="store_const", const="files")
+    parser.add_argument("--generate", dest="mode", action="store_const", const="generate")
     parser.add_argument("--workers", type=int, default=1, help="processes side by side")
     parser.add_argument("--seconds", type=float, help="stop after this time")
     parser.add_argument("--timeout", type=float, help="seconds for one case")

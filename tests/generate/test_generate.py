@@ -294,3 +294,64 @@ def test_the_plane_takes_the_same_calls(method):
     assert mesh.names == {(1, 5): "hole"}
     if method != "constrained":
         assert made.report.shapes.angle_min > 25.0
+
+
+@pytest.mark.parametrize("method", ["remesh", "refine"])
+def test_in_the_plane_sizes_belong_to_names_and_tags_by_every_method(method):
+    mesh = anistar.generate(square_with_hole(), 0.5, size_at={"hole": 0.05}, method=method).mesh
+    at_hole = mesh.facets[mesh.facet_tags == 5]
+    assert edge_lengths(mesh.points, at_hole).max() < 0.08
+    other = anistar.generate(square_with_hole(), 0.5, size_at={4: 0.05}, method=method).mesh
+    assert edge_lengths(other.points, other.facets[other.facet_tags == 4]).max() < 0.08
+    assert edge_lengths(other.points, other.facets[other.facet_tags == 2]).max() > 0.15
+
+
+@pytest.mark.parametrize("given", [box, square_with_hole])
+def test_sizes_that_are_all_infinite_ask_for_nothing(given):
+    plc = given()
+    made = anistar.generate(plc, np.full(plc.n_points, np.inf))
+    assert anistar.validate(made.mesh) == []
+    assert made.report.converged
+
+
+def test_a_budget_that_is_too_small_for_a_close_look_may_do_for_the_mesh():
+    made = anistar.generate(box(), lambda points: np.full(len(points), 0.35), max_vertices=1000)
+    assert made.report.converged
+    assert made.mesh.n_points < 200
+
+
+def test_refinement_sees_small_sizes_between_the_points_of_the_geometry():
+    middle = np.array([0.52, 0.53, 0.55])
+
+    def size(points):
+        return np.where(((points - middle) ** 2).sum(axis=1) < 0.12**2, 0.04, 0.5)
+
+    mesh = anistar.generate(box(), size, method="refine").mesh
+    near = ((mesh.points - middle) ** 2).sum(axis=1) < 0.1**2
+    assert near.sum() > 60
+    ends = unique_edges(mesh.cells, mesh.n_points)
+    assert edge_lengths(mesh.points, ends[near[ends].all(axis=1)]).max() < 0.085
+
+
+def test_refinement_takes_no_anisotropic_size():
+    M = np.repeat(M_FLAT[None], 8, 0)
+    with pytest.raises(ValueError, match="isotropic"):
+        anistar.generate(box(), M, method="refine")
+
+
+@pytest.mark.parametrize(
+    ("given", "kind", "message"),
+    [
+        ({"size": (box(), 1, 2)}, ValueError, "pair"),
+        ({"size_at": {1: 0.1}, "method": "constrained"}, ValueError, "constrained"),
+        ({"size_at": [1]}, TypeError, "mapping"),
+    ],
+)
+def test_wishes_of_a_wrong_form_are_named(given, kind, message):
+    with pytest.raises(kind, match=message):
+        anistar.generate(box(), **given)
+
+
+def test_a_tuple_of_numbers_is_as_good_as_an_array():
+    made = [anistar.generate(box(), kind([0.4] * 8)).mesh for kind in (tuple, np.array)]
+    assert made[0].points.tobytes() == made[1].points.tobytes()

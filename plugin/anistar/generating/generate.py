@@ -147,7 +147,7 @@ def _finished(
 ) -> Stage:
     """Return what the method makes of the constrained mesh."""
     if options.method == "constrained":
-        if size is not None or metric is not None:
+        if size is not None or metric is not None or options.size_at:
             raise ValueError('method="constrained" adds no points for a size or a metric')
         return Stage(mesh=first.tagged(), numbered=first.mesh)
     if options.method == "refine" and metric is not None:

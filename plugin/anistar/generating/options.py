@@ -94,6 +94,10 @@ class GenerateOptions:
             value = getattr(self, name)
             if value not in get_args(kind):
                 raise ValueError(f"{name} must be one of {', '.join(get_args(kind))}: {value!r}")
+        if not isinstance(self.size_at, Mapping):
+            raise TypeError(
+                f"size_at must be a mapping of tags or names to sizes: {self.size_at!r}"
+            )
         require_numbers(bound=self.bound, sliver_dihedral=self.sliver_dihedral, growth=self.growth)
         if self.bound is not None and not (np.isfinite(self.bound) and self.bound >= 0.6):
             raise ValueError(f"bound must be at least 0.6 and finite, got {self.bound}")

@@ -14,6 +14,9 @@ from ...remeshing.report import RemeshReport
 #: What a step that begins after its time gets, in seconds: it stops at its first look.
 NO_TIME = 1e-3
 
+#: Edges per diagonal of the mesh on which a wish is seen first.
+FIRST_LOOK = 20.0
+
 
 @dataclass(frozen=True, kw_only=True)
 class Stage:
@@ -57,6 +60,11 @@ class Clock:
         finally:
             taken = time.perf_counter() - began
             self.seconds[step] = self.seconds.get(step, 0.0) + taken
+
+    @property
+    def is_up(self) -> bool:
+        """Whether nothing is left of the budget."""
+        return self.seconds_left() == NO_TIME
 
     def seconds_left(self) -> float | None:
         """Return what is left of the budget, None without one."""

@@ -60,7 +60,7 @@ def wanted_of(
     is_free = given is None and options.method == "remesh"
     wishes: list[Wish] = []
     on_surface = np.full(first.mesh.n_points, np.inf)
-    if isinstance(given, np.ndarray | list) and np.ndim(given) == 1:
+    if _is_list(given):
         on_surface = first.at_points(_sizes(np.asarray(given, dtype=np.float64), first))
     elif given is not None:
         wishes.append(_as_wish(given, what, first))
@@ -83,6 +83,8 @@ def wanted_of(
     )
     if is_free or around.asks:
         wishes.append(around)
+    if not wishes and options.method == "remesh":  # all sizes that are given are infinite
+        wishes.append(Uniform(extent / EDGES_PER_DIAGONAL))
     wish = Together(wishes) if len(wishes) > 1 else wishes[0] if wishes else None
     return Wanted(wish, warnings)
 
@@ -102,8 +104,17 @@ def _as_wish(given: Any, what: str, first: FirstMesh) -> Wish:
 
 def _tagging(first: FirstMesh, options: GenerateOptions) -> Callable[[Mesh], Mesh]:
     """Return what gives the meshes in between the tags of the geometry."""
-    goes_by_numbers = options.method == "refine" or options.shape == "polyhedron"
-    return first.tagged if first.plc.dim == 3 and goes_by_numbers else _as_it_is
+    goes_by_numbers = options.method == "refine" or (
+        first.plc.dim == 3 and options.shape == "polyhedron"
+    )
+    return first.tagged if goes_by_numbers else _as_it_is
+
+
+def _is_list(given: Any) -> bool:
+    """Return whether something is numbers in a row, and no pair of a mesh and what is on it."""
+    if isinstance(given, tuple | list):
+        return all(map(np.isscalar, given))
+    return isinstance(given, np.ndarray) and given.ndim == 1
 
 
 def _as_it_is(mesh: Mesh) -> Mesh:

@@ -203,6 +203,10 @@ class Together:
 
 def carried_from(background: tuple[AnyMesh, Any]) -> Carried:
     """Return the wish that a pair of a mesh and the sizes or the metric on it states."""
+    if len(background) != 2:
+        raise ValueError(
+            f"a background is a pair of a mesh and what is on it, not {len(background)} things"
+        )
     mesh, given = background
     held = opened(mesh, "the background mesh")
     return Carried(held.mesh, check_metric(metric_in(held, given)))
