@@ -247,7 +247,7 @@ def test_what_cannot_be_meshed_is_named():
         ({"size": 0.1, "metric": np.repeat(M_FLAT[None], 8, 0)}, "not both"),
         ({"size": -0.1}, "positive"),
         ({"size": np.ones(7)}, "8 points"),
-        ({"size": 0.1, "methode": "refine"}, "method"),
+        ({"size": 0.1, "methods": "refine"}, "method"),
         ({"size": 0.1, "method": "advance"}, "remesh"),
         ({"size": 0.1, "bound": 0.5}, "bound"),
         ({"metric": np.ones((8, 2, 2))}, "shape"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -13,43 +13,10 @@ from ..meshes.topology import vector_lengths
 from ..metric import exp_metric, log_metric
 from ..metric.kernels.elementary import exp, log
 from .geometry.plc import PLC
+from .pieces import Pieces
 
 #: Two segments that meet at a point are one line if the sine of the angle between is less.
 STRAIGHT = 1e-10
-
-
-class Pieces(Protocol):
-    """Cells that conform to a complex, as the core makes them.
-
-    Attributes
-    ----------
-    points : (n, d) float64
-        Those of the complex first.
-    cells : (m, d + 1) int32
-    cell_tags : (m,) int32
-    walls : (w, d) int32
-        The facets of the cells that make up the facets of the complex, in 2D its segments.
-    wall_facets : (w,) int32
-        The facet, in 2D the segment, that each is a part of.
-    edges : (e, 2) int32
-        Those that make up the segments of the complex.
-    edge_segments : (e,) int32
-        The segment that each is a part of.
-    steiner_ends : (s, 2) int32
-        The points between which each point after those of the complex was placed.
-    steiner_shares : (s,) float64
-        How far from the first of them to the second, in (0, 1).
-    """
-
-    points: Floats
-    cells: Ints
-    cell_tags: Ints
-    walls: Ints
-    wall_facets: Ints
-    edges: Ints
-    edge_segments: Ints
-    steiner_ends: Ints
-    steiner_shares: Floats
 
 
 @dataclass(frozen=True, eq=False)

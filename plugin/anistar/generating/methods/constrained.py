@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ...base.arrays import Floats, Ints
+from ...base.arrays import Floats
 from ...base.core_errors import meshing_errors
 from ...base.progress import task
 from ..geometry.plc import PLC
 from ..options import GenerateOptions
+from ..pieces import Pieces
 
 #: Rules of the core, by what the options call them.
 RULES = {"regions": "parity", "winding": "winding", "nonzero": "nonzero"}
@@ -23,42 +24,19 @@ LARGEST, SMALLEST = 1e30, 1e-30
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Constrained:
-    """Tetrahedra that conform to a complex.
+class Constrained(Pieces):
+    """Tetrahedra that conform to a complex, and how they came about.
+
+    The tag of a cell is that of a region with a seed, its winding number, or else a number from one
+    on; walls are turned as the facets are.
 
     Attributes
     ----------
-    points : (n, 3) float64
-        Those of the complex first, as they were, then the Steiner points.
-    cells : (m, 4) int32
-    cell_tags : (m,) int32
-        The tag of a region with a seed, its winding number, or else a number from one on.
-    walls : (w, 3) int32
-        The facets of the cells that make up the facets of the complex, turned as they are.
-    wall_facets : (w,) int32
-        The facet that each is a part of.
-    edges : (e, 2) int32
-        The edges of the cells that make up the segments of the complex.
-    edge_segments : (e,) int32
-        The segment that each is a part of.
-    steiner_ends : (s, 2) int32
-        The points between which each Steiner point was placed; it may be Steiner points.
-    steiner_shares : (s,) float64
-        How far from the first of them to the second, in (0, 1).
     counts : dict of str to int
         What was missing, placed, flipped and removed on the way.
     warnings : tuple of str
     """
 
-    points: Floats
-    cells: Ints
-    cell_tags: Ints
-    walls: Ints
-    wall_facets: Ints
-    edges: Ints
-    edge_segments: Ints
-    steiner_ends: Ints
-    steiner_shares: Floats
     counts: dict[str, int]
     warnings: tuple[str, ...] = ()
 

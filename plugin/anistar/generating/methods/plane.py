@@ -15,6 +15,7 @@ from ...base.arrays import Floats, Ints
 from ...base.core_errors import meshing_errors
 from ...meshes.topology import cell_volumes, edge_lengths
 from ..geometry.plc import PLC
+from ..pieces import Pieces
 
 PlaneSizes = float | ArrayLike | Callable[[Floats], ArrayLike]
 """One length of edges, one at each point of the mesh, or ``size(points)``."""
@@ -39,42 +40,26 @@ _INSIDE = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class PlanePieces:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlanePieces(Pieces):
     """Triangles that conform to a complex in the plane.
+
+    The tag of a cell is that of the seed; without one 0, or the winding number. Walls have the
+    domain on their left where they bound it. There are no edges beside them, and points on them
+    need no history.
 
     Attributes
     ----------
-    points : (n, 2) float64
-        Those of the complex first, whether they are used or not.
-    cells : (m, 3) int32
-    cell_tags : (m,) int32
-        The tag of the seed; without one 0, or the winding number.
-    walls : (w, 2) int32
-        The edges that make up the segments, the domain on their left where they bound it.
-    wall_facets : (w,) int32
-        The segment of the complex that each is a part of.
     counts : dict of str to int
         What refinement has done, see `refined_plane`.
     stop_reason : str
         "finished", or the bound that ended it: "max_vertices", "max_seconds".
     warnings : tuple of str
-    edges, edge_segments, steiner_ends, steiner_shares : arrays
-        Empty: edges are facets here, and points on them need no history.
     """
 
-    points: Floats
-    cells: Ints
-    cell_tags: Ints
-    walls: Ints
-    wall_facets: Ints
     counts: dict[str, int] = field(default_factory=dict)
     stop_reason: str = "finished"
     warnings: tuple[str, ...] = ()
-    edges: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
-    edge_segments: Ints = field(default_factory=lambda: np.zeros(0, np.int32))
-    steiner_ends: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
-    steiner_shares: Floats = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
     def _of(cls, made: _core.MeshArrays, scale: float, **others: Any) -> PlanePieces:

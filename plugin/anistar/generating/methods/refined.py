@@ -10,10 +10,12 @@ from ...base.arrays import Floats
 from ...base.progress import task
 from ...metric import from_sizes, graded
 from ...metric.base.mesh import diameter
-from ..first_mesh import FirstMesh, Pieces
+from ..first_mesh import FirstMesh
 from ..options import GenerateOptions
+from ..pieces import Pieces
 from ..sizes.wishes import Carried, Together, Wish
 from .plane import BOUND, PlaneBudget, PlanePieces, refined_plane
+from .refinement import BOUND as DEFAULT_BOUND
 from .refinement import RefinementParameters, refined_tetrahedra
 from .stages import FIRST_LOOK, Clock, Stage
 
@@ -32,7 +34,8 @@ def refined(first: FirstMesh, wish: Wish | None, options: GenerateOptions, clock
     """
     if wish is not None and wish.may_surprise:
         wish = _seen_closely(first, wish, options, clock)
-    mesh, record, reason = first, {}, "finished"
+    mesh, reason = first, "finished"
+    record: dict[str, Any] = {}
     for _ in range(MOST_ROUNDS):
         sizes = None if wish is None else _sizes(mesh, wish)
         made, record, reason = _refined(first, mesh.pieces, sizes, options, clock)
@@ -99,11 +102,11 @@ def _refined(
             plane = refined_plane(first.plc, pieces, sizes, bound, budget)
             return plane, dict(plane.counts), plane.stop_reason
         parameters = RefinementParameters(
+            bound=DEFAULT_BOUND if options.bound is None else options.bound,
             sliver_dihedral=options.sliver_dihedral,
             max_vertices=options.max_vertices,
             max_seconds=seconds,
             seed=options.seed,
-            **({} if options.bound is None else {"bound": options.bound}),
         )
         made = refined_tetrahedra(pieces, sizes, parameters, callback)
         return made, made.record, made.stop_reason

@@ -4,33 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ... import _core
-from ...base.arrays import Floats, Ints
+from ...base.arrays import Floats
 from ...metric.base.by_name import by_name, require_numbers
+from ..pieces import Pieces
 
 Sizes = float | ArrayLike | Callable[[Floats], ArrayLike]
 """One size, one for each point, or a function of an (n, 3) array of points."""
 
+#: B, the ratio of circumradius and shortest edge above which the theorem proves an end.
+BOUND = 2.0
+
 #: The rules add points by the thousand; a mesh this large is no slip of the pen.
 MOST_VERTICES = 50_000_000
-
-
-class Pieces(Protocol):
-    """What is refined: the arrays of `Constrained`."""
-
-    points: Floats
-    cells: Ints
-    cell_tags: Ints
-    walls: Ints
-    wall_facets: Ints
-    edges: Ints
-    edge_segments: Ints
 
 
 @by_name
@@ -65,7 +57,7 @@ class RefinementParameters:
         Of the picks.
     """
 
-    bound: float = 2.0
+    bound: float = BOUND
     sliver_dihedral: float = 12.0
     delta: float = 0.1
     rho_0: float = 2.75
@@ -124,23 +116,11 @@ class RefinementParameters:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RefinedTetrahedra:
-    """Tetrahedra that conform to a complex, refined.
+class RefinedTetrahedra(Pieces):
+    """Tetrahedra that conform to a complex, refined; points of the constrained mesh come first.
 
     Attributes
     ----------
-    points : (n, 3) float64
-        Those of the constrained mesh first, as they were.
-    cells : (m, 4) int32
-    cell_tags : (m,) int32
-    walls : (w, 3) int32
-        The facets of the cells that make up the facets of the complex.
-    wall_facets : (w,) int32
-        The facet that each is a part of.
-    edges : (e, 2) int32
-        The edges of the cells that make up the segments of the complex.
-    edge_segments : (e,) int32
-        The segment that each is a part of.
     stop_reason : str
         "finished", or the bound that ended it: "max_vertices", "max_seconds".
     record : dict
@@ -155,17 +135,8 @@ class RefinedTetrahedra:
         floor of that; seconds.
     """
 
-    points: Floats
-    cells: Ints
-    cell_tags: Ints
-    walls: Ints
-    wall_facets: Ints
-    edges: Ints
-    edge_segments: Ints
     stop_reason: str
     record: dict[str, Any]
-    steiner_ends: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int32))
-    steiner_shares: Floats = field(default_factory=lambda: np.zeros(0))
 
 
 def refined_tetrahedra(

@@ -31,7 +31,7 @@ class GenerateReport(Told):
         Facets and regions of the mesh against those of the geometry.
     repair : dict
         What was changed of the geometry, by kind; empty with ``repair="none"``.
-    constrained : dict of str to float
+    constrained : dict of str to int
         Counts of the constrained Delaunay mesh: Steiner points, facets recovered and the like.
     refinement : dict
         Of ``method="refine"``: points by rule, refusals by name, what stays encroached and why.
@@ -52,7 +52,7 @@ class GenerateReport(Told):
     shapes: CellShapes
     measures: FacetMeasures
     repair: dict[str, Any]
-    constrained: dict[str, float]
+    constrained: dict[str, int]
     refinement: dict[str, Any]
     remeshing: tuple[RemeshReport, ...]
     warnings: tuple[str, ...]
