@@ -1,7 +1,5 @@
 #include "generate/refinement/plc_faces.h"
 
-#include "generate/refinement/walled_mesh.h"
-
 #include <algorithm>
 
 namespace anistar::generate {

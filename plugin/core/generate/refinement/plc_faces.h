@@ -3,23 +3,13 @@
 // form an acute dihedral angle. All of it is combinatorial: a point is on a facet
 // because it was put there, not because its coordinates say so.
 
-#include "generate/tetrahedralisation.h"
-#include "mesh/adjacency.h"
+#include "generate/refinement/carrier.h"
+#include "generate/refinement/walled_mesh.h"
 
 #include <span>
 #include <vector>
 
 namespace anistar::generate {
-
-/// The face of the complex whose relative interior holds a vertex of the mesh.
-struct Carrier {
-  enum class Kind : std::uint8_t { vertex, segment, facet, space };
-  Kind kind = Kind::space;
-  Index face = none; ///< the vertex itself, the segment, the facet
-
-  [[nodiscard]] bool is_on_segment() const { return kind <= Kind::segment; }
-  [[nodiscard]] bool is_on_facet() const { return kind <= Kind::facet; }
-};
 
 /// Lists of indices, one after another.
 class IndexLists {
@@ -48,8 +38,6 @@ struct Projection {
     return {x[(axis + 1) % 3], x[(axis + 2) % 3]};
   }
 };
-
-struct WalledMesh;
 
 class PlcFaces {
 public:
