@@ -11,9 +11,9 @@ namespace anistar::generate {
 
 using Segment = std::array<Index, 2>;
 
-/// A piecewise linear complex whose facets are triangulated. Triangles of one facet lie on
-/// one plane up to the flatness that the caller has accepted; which triangles make it up
-/// may change, its segments may not.
+/// A piecewise linear complex whose facets are triangulated. Triangles of one facet lie
+/// on one plane up to the flatness that the caller has accepted; which triangles make
+/// it up may change, its segments may not.
 struct Plc {
   std::vector<Vector<3>> points;
   std::vector<Facet<3>> triangles;

@@ -1,6 +1,6 @@
 // What the report says of a refined mesh.
 
-#include "generate/refinement/rules.h"
+#include "generate/refinement/rules/rules.h"
 
 #include <algorithm>
 

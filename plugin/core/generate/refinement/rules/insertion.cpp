@@ -1,6 +1,6 @@
 // Where new points are put, which picks are taken, and what an insertion brings about.
 
-#include "generate/refinement/rules.h"
+#include "generate/refinement/rules/rules.h"
 
 #include <algorithm>
 

@@ -3,14 +3,14 @@
 // conditionally-refine-tet, with the rules that Terminator 3D adds at small angles and,
 // in the second phase, picks that avoid small slivers.
 
-#include "generate/refinement/cavity.h"
-#include "generate/refinement/clusters.h"
-#include "generate/refinement/facet_walk.h"
-#include "generate/refinement/picks.h"
-#include "generate/refinement/queues.h"
+#include "generate/refinement/mesh/cavity.h"
+#include "generate/refinement/mesh/facet_walk.h"
+#include "generate/refinement/mesh/size_field.h"
+#include "generate/refinement/mesh/spheres.h"
 #include "generate/refinement/refinement.h"
-#include "generate/refinement/size_field.h"
-#include "generate/refinement/spheres.h"
+#include "generate/refinement/rules/clusters.h"
+#include "generate/refinement/rules/queues.h"
+#include "generate/refinement/slivers/picks.h"
 
 #include <map>
 #include <optional>

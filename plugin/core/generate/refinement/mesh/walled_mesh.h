@@ -7,7 +7,7 @@
 // change.
 
 #include "base/predicates.h"
-#include "generate/refinement/carrier.h"
+#include "generate/refinement/mesh/carrier.h"
 #include "generate/tetrahedralisation.h"
 
 #include <map>

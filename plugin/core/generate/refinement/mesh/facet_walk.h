@@ -3,8 +3,8 @@
 // the cells between walls. What a walk finds is a place to try: whether a point may be
 // put there the exact predicates of its cavity decide.
 
-#include "generate/refinement/plc_faces.h"
-#include "generate/refinement/walled_mesh.h"
+#include "generate/refinement/mesh/plc_faces.h"
+#include "generate/refinement/mesh/walled_mesh.h"
 
 namespace anistar::generate {
 

@@ -1,7 +1,7 @@
 #pragma once
 // What waits for rules 1, 2 and 3, in that order of priority.
 
-#include "generate/refinement/walled_mesh.h"
+#include "generate/refinement/mesh/walled_mesh.h"
 
 #include <deque>
 #include <optional>

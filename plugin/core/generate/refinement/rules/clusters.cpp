@@ -1,4 +1,4 @@
-#include "generate/refinement/clusters.h"
+#include "generate/refinement/rules/clusters.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "generate/refinement/plc_faces.h"
+#include "generate/refinement/mesh/plc_faces.h"
 
 #include <algorithm>
 

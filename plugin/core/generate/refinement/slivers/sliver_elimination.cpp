@@ -1,7 +1,7 @@
 // Li's elimination of slivers: new points are picked in refinement regions so that they
 // form no small sliver, that is avoid the forbidden tori of all triangles around.
 
-#include "generate/refinement/rules.h"
+#include "generate/refinement/rules/rules.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "generate/refinement/walled_mesh.h"
+#include "generate/refinement/mesh/walled_mesh.h"
 
 #include <algorithm>
 #include <limits>

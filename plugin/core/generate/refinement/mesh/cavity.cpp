@@ -1,6 +1,6 @@
-#include "generate/refinement/cavity.h"
+#include "generate/refinement/mesh/cavity.h"
 
-#include "generate/refinement/spheres.h"
+#include "generate/refinement/mesh/spheres.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "generate/refinement/rules.h"
+#include "generate/refinement/rules/rules.h"
 
 #include <algorithm>
 

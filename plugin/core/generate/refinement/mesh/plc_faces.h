@@ -3,8 +3,8 @@
 // form an acute dihedral angle. All of it is combinatorial: a point is on a facet
 // because it was put there, not because its coordinates say so.
 
-#include "generate/refinement/carrier.h"
-#include "generate/refinement/walled_mesh.h"
+#include "generate/refinement/mesh/carrier.h"
+#include "generate/refinement/mesh/walled_mesh.h"
 
 #include <span>
 #include <vector>

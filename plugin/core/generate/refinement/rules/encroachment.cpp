@@ -1,7 +1,7 @@
 // Which edges, facets and tetrahedra a rule is about: those that are encroached, larger
 // than the size, or badly shaped.
 
-#include "generate/refinement/rules.h"
+#include "generate/refinement/rules/rules.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "generate/refinement/facet_walk.h"
+#include "generate/refinement/mesh/facet_walk.h"
 
 namespace anistar::generate {
 namespace {

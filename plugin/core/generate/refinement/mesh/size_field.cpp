@@ -1,4 +1,4 @@
-#include "generate/refinement/size_field.h"
+#include "generate/refinement/mesh/size_field.h"
 
 #include "base/predicates.h"
 

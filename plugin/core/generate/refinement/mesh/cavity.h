@@ -14,7 +14,7 @@
 // hidden stay then, though all walls go that should. The other edges, encroached now,
 // are next, by rule 1, before any other decision, and take those cells away.
 
-#include "generate/refinement/walled_mesh.h"
+#include "generate/refinement/mesh/walled_mesh.h"
 
 #include <span>
 #include <vector>

@@ -1,6 +1,6 @@
 // What follows when a point is rejected, because it encroaches upon edges or facets.
 
-#include "generate/refinement/rules.h"
+#include "generate/refinement/rules/rules.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 // below 60 degrees are split on spheres around it, of radii 2^k, so that no new point
 // of one encroaches upon a piece of another.
 
-#include "generate/refinement/walled_mesh.h"
+#include "generate/refinement/mesh/walled_mesh.h"
 
 #include <limits>
 #include <vector>
