@@ -35,6 +35,7 @@ struct Cause {
   bool frees_facet =
       false; ///< p is a vertex of the complex or on a face disjoint from F
   bool must_improve = false; ///< a sliver: only for better dihedral angles
+  bool is_in_wedge = false;  ///< between acute facets: slivers of any size are avoided
 };
 
 class Rules {
@@ -134,6 +135,7 @@ private:
   [[nodiscard]] double small_sliver_cosine(const Site &site, double r_tau) const;
   [[nodiscard]] double cavity_cosine() const;
   [[nodiscard]] bool is_sliver(Index t) const;
+  [[nodiscard]] bool is_flatter_than_its_wedge(Index t) const;
 };
 
 } // namespace anistar::generate

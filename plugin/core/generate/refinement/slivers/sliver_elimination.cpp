@@ -33,6 +33,19 @@ bool Rules::is_sliver(Index t) const {
   return largest_dihedral_cosine(mesh_.simplex(t)) > pick_rule_.sliver_cosine;
 }
 
+/// Whether its least dihedral angle is below half of the least angle of the acute pairs
+/// of facets that its vertices are on: that is not for the geometry's sake.
+bool Rules::is_flatter_than_its_wedge(Index t) const {
+  const Cell<3> &cell = mesh_.cells[t];
+  std::optional<double> cosine;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j)
+      cosine = std::max(cosine, faces_.cosine_between(mesh_.carriers[cell[i]],
+                                                      mesh_.carriers[cell[j]]));
+  return cosine &&
+         largest_dihedral_cosine(mesh_.simplex(t)) > std::sqrt(.5 * (1 + *cosine));
+}
+
 void Rules::begin_sliver_elimination() {
   const SliverSettings &slivers = settings_.slivers;
   double l_1 = std::numeric_limits<double>::infinity();
