@@ -12,7 +12,8 @@ constexpr double cos_acute_dihedral = 0.34202014332566873; // of 70 degrees
 
 /// The cosine of the angle that the inside of the domain has between two walls at an
 /// edge, if it is acute in this sense.
-std::optional<double> acute_cosine(const WalledMesh &mesh, const WallEdge &edge, HalfFacet next) {
+std::optional<double> acute_cosine(const WalledMesh &mesh, const WallEdge &edge,
+                                   HalfFacet next) {
   const auto [x, y, u] = mesh.turned(edge);
   const Index w = mesh.third_vertex(next, x, y);
   const Vector<3> &o = mesh.points[x], e = mesh.points[y] - o;

@@ -174,7 +174,8 @@ Outcome Rules::conditionally_refine_facet(HalfFacet f, const Cause &cause) {
   const Vector<3> along = (mesh_.points[v[1]] - mesh_.points[v[0]]).normalized();
   const Vector<3> across =
       (mesh_.points[v[2]] - mesh_.points[v[0]]).cross(along).cross(along).normalized();
-  Picks picks(pick_rule_, settings_.seed, n_regions_++);
+  Picks picks(cause.is_in_wedge ? wedge_pick_rule_ : pick_rule_, settings_.seed,
+              n_regions_++);
   BestPick best;
   while (picks.has_next()) {
     const Vector<3> offset = picks.next(2);
@@ -213,9 +214,9 @@ Outcome Rules::conditionally_refine_tet(Index t) {
   const CellShape shape = shape_of(t);
   const bool by_size = is_large(shape);
   bool by_ratio = shape.ratio() > settings_.bound, is_in_wedge = false;
-  if (by_ratio && !by_size)
+  if (!by_size)
     if (const std::optional<Refusal> refusal = acute_refusal(t, shape)) {
-      if (!eliminates_slivers_ || !is_flatter_than_its_wedge(t))
+      if (by_ratio && !(eliminates_slivers_ && is_flatter_than_its_wedge(t)))
         return refuse(*refusal);
       by_ratio = false; // its ratio stays, but its angles may become better
       is_in_wedge = true;

@@ -87,7 +87,8 @@ private:
   Cavity cavity_;
   RefinementRecord record_;
   PickRule pick_rule_;
-  double floor_; ///< no shorter edge is made
+  PickRule wedge_pick_rule_{}; ///< on facets, for slivers between acute ones
+  double floor_;               ///< no shorter edge is made
   Insertions *insertions_;
   bool eliminates_slivers_ = false;
   std::int32_t n_regions_ = 0; ///< refinement regions so far
