@@ -4,8 +4,18 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from generate.polyhedra import book, cube, cube_with_facet, letter_e, letter_l, rotated, wedge
+from generate.polyhedra import (
+    CUBE_FACETS,
+    book,
+    cube,
+    cube_with_facet,
+    letter_e,
+    letter_l,
+    rotated,
+    wedge,
+)
 
+from anistar.generating import PLC
 from anistar.generating.methods.constrained import constrained
 from anistar.generating.methods.refinement import RefinementParameters, refined_tetrahedra
 
@@ -210,6 +220,36 @@ def test_long_edges_side_by_side_do_not_block_each_other():
     assert record["edge_lemma"]["violated"] == record["facet_lemma"]["violated"] == 0
     x = made.points[made.edges]
     assert np.linalg.norm(x[:, 1] - x[:, 0], axis=1).max() <= 1.33 * 0.09
+
+
+def plates(count, gap):
+    """A cube with parallel squares in it, each turned against the one below."""
+    box = cube()
+    corners = np.radians(45.0 * np.arange(count)[:, None] + [0.0, 90.0, 180.0, 270.0])
+    levels = 0.5 + gap * (np.arange(count) - (count - 1) / 2)
+    squares = np.stack(
+        [
+            0.5 + 0.4 * np.cos(corners),
+            0.5 + 0.4 * np.sin(corners),
+            np.broadcast_to(levels[:, None], corners.shape),
+        ],
+        axis=2,
+    )
+    n = len(box.points)
+    facets = [list(f) for f in CUBE_FACETS]
+    facets += [list(range(n + 4 * k, n + 4 * k + 4)) for k in range(count)]
+    return PLC(points=np.vstack([box.points, squares.reshape(-1, 3)]), facets=facets)
+
+
+def test_edges_of_plates_near_to_each_other_are_split():
+    pieces, made = refine(plates(6, 0.04))
+    assert_valid(made, pieces)
+    record = made.record
+    assert record["reduced_cavities"] > 0
+    assert record["encroached"]["edges"] == 0
+    assert record["above_bound"] == 0
+    assert record["not_delaunay"] == 0
+    assert_locally_delaunay(made)
 
 
 def test_edges_of_a_cluster_are_split_on_spheres_of_radii_that_are_powers_of_two():

@@ -38,19 +38,25 @@ CavityFlaw Cavity::gather(WalledMesh &mesh, const Site &site) {
     find_boundary(mesh, site);
     if (!is_star_shaped(mesh, site))
       continue;
-    if (const CavityFlaw flaw = what_is_buried(mesh, site); flaw != CavityFlaw::no_flaw)
-      return flaw;
-    return find_rims(mesh) ? CavityFlaw::no_flaw : CavityFlaw::folds_facet;
+    const CavityFlaw flaw = flaw_of_star(mesh, site);
+    if (flaw == CavityFlaw::buries_subsegment && site.may_leave_hidden)
+      break;
+    return flaw;
   }
   if (!site.may_leave_hidden || !leave_hidden(mesh, site))
     return CavityFlaw::not_star_shaped;
+  return flaw_of_star(mesh, site);
+}
+
+CavityFlaw Cavity::flaw_of_star(const WalledMesh &mesh, const Site &site) {
   if (const CavityFlaw flaw = what_is_buried(mesh, site); flaw != CavityFlaw::no_flaw)
     return flaw;
   return find_rims(mesh) ? CavityFlaw::no_flaw : CavityFlaw::folds_facet;
 }
 
-/// Leaves cells of which the point sees no whole facet, all but those at its own
-/// facets: what is open of these stays open.
+/// Leaves cells of which the point sees no whole facet, and those around subsegments
+/// that would be buried, all but those at its own facets: what is open of these stays
+/// open.
 bool Cavity::leave_hidden(const WalledMesh &mesh, const Site &site) {
   start(mesh);
   flood(mesh, site, false);
@@ -63,6 +69,8 @@ bool Cavity::leave_hidden(const WalledMesh &mesh, const Site &site) {
         mark_[h.cell()] = inside_mark() + 1;
         ++n_left;
       }
+    if (n_left == 0)
+      n_left = leave_around_buried(mesh, site);
     if (n_left == 0) {
       is_reduced_ = true;
       return n_open_walls(mesh, site) == n_open;
@@ -73,6 +81,26 @@ bool Cavity::leave_hidden(const WalledMesh &mesh, const Site &site) {
     keep_connected(mesh, site);
   }
   return false;
+}
+
+std::size_t Cavity::leave_around_buried(const WalledMesh &mesh, const Site &site) {
+  find_boundary_subsegments(mesh);
+  std::size_t n_left = 0;
+  for (Index c : cells_) {
+    const Cell<3> &cell = mesh.cells[c];
+    const auto &walls = mesh.walls[c];
+    if (std::find(site.seeds.begin(), site.seeds.end(), c) != site.seeds.end() ||
+        std::any_of(walls.begin(), walls.end(),
+                    [&](Index wall) { return wall != none && is_open(site, wall); }))
+      continue;
+    if (std::any_of(edges_of_cell.begin(), edges_of_cell.end(), [&](const auto &edge) {
+          return is_buried({cell[edge[0]], cell[edge[1]]}, mesh, site);
+        })) {
+      mark_[c] = inside_mark() + 1;
+      ++n_left;
+    }
+  }
+  return n_left;
 }
 
 std::size_t Cavity::n_open_walls(const WalledMesh &mesh, const Site &site) const {
@@ -171,6 +199,7 @@ bool Cavity::is_star_shaped(const WalledMesh &mesh, const Site &site) const {
 }
 
 CavityFlaw Cavity::what_is_buried(const WalledMesh &mesh, const Site &site) {
+  find_boundary_subsegments(mesh);
   on_boundary_.resize(mesh.points.size(), 0);
   for (HalfFacet h : boundary_)
     for (Index v : mesh.facet(h))
@@ -180,23 +209,33 @@ CavityFlaw Cavity::what_is_buried(const WalledMesh &mesh, const Site &site) {
     for (Index v : cell)
       if (on_boundary_[v] != round_)
         return CavityFlaw::buries_vertex;
-    for (const auto &[i, j] : edges_of_cell) {
-      const Index a = cell[i], b = cell[j];
-      if (mesh.segment_of(a, b) == none || is_on_boundary({a, b}, mesh))
-        continue;
-      if (Segment{std::min(a, b), std::max(a, b)} != site.split_edge)
+    for (const auto &[i, j] : edges_of_cell)
+      if (is_buried({cell[i], cell[j]}, mesh, site))
         return CavityFlaw::buries_subsegment;
-    }
   }
   return CavityFlaw::no_flaw;
 }
 
-bool Cavity::is_on_boundary(const Segment &edge, const WalledMesh &mesh) const {
-  return std::any_of(boundary_.begin(), boundary_.end(), [&](HalfFacet h) {
+/// Whether an edge is a subsegment, other than the one that is split, inside.
+bool Cavity::is_buried(const Segment &edge, const WalledMesh &mesh,
+                       const Site &site) const {
+  const Segment sorted{std::min(edge[0], edge[1]), std::max(edge[0], edge[1])};
+  return mesh.segment_of(edge[0], edge[1]) != none && sorted != site.split_edge &&
+         !std::binary_search(boundary_subsegments_.begin(), boundary_subsegments_.end(),
+                             sorted);
+}
+
+void Cavity::find_boundary_subsegments(const WalledMesh &mesh) {
+  boundary_subsegments_.clear();
+  for (HalfFacet h : boundary_) {
     const Facet<3> f = mesh.facet(h);
-    const auto has = [&](Index v) { return f[0] == v || f[1] == v || f[2] == v; };
-    return has(edge[0]) && has(edge[1]);
-  });
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = f[(k + 1) % 3], b = f[(k + 2) % 3];
+      if (mesh.segment_of(a, b) != none)
+        boundary_subsegments_.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(boundary_subsegments_.begin(), boundary_subsegments_.end());
 }
 
 bool Cavity::find_rims(const WalledMesh &mesh) {

@@ -11,8 +11,9 @@
 // around a hole, the point of each encroaches upon the others; cells behind them hold
 // it in their spheres, and it sees only a part of them. No star fills such a cavity
 // before the other edges are split, and these wait for this one. So cells that are
-// hidden stay then, though all walls go that should. The other edges, encroached now,
-// are next, by rule 1, before any other decision, and take those cells away.
+// hidden stay then, and those around an edge that would be buried, though all walls go
+// that should. Flips (flips.h) mend what can be mended at once. The other edges,
+// encroached now, are next, by rule 1, before any other decision, and take the rest.
 
 #include "generate/refinement/mesh/walled_mesh.h"
 
@@ -81,6 +82,7 @@ private:
   std::vector<Index> cells_;
   std::vector<std::array<Index, 4>> boundary_index_; ///< of each cell in cells_
   std::vector<HalfFacet> boundary_;
+  std::vector<Segment> boundary_subsegments_; ///< sorted
   std::vector<Rim> rims_;
   std::vector<Index> new_cells_;
   std::vector<HalfFacet> outer_;
@@ -90,7 +92,9 @@ private:
   std::uint32_t round_ = 0;
   bool is_enlarged_ = false, is_reduced_ = false;
 
+  [[nodiscard]] CavityFlaw flaw_of_star(const WalledMesh &mesh, const Site &site);
   bool leave_hidden(const WalledMesh &mesh, const Site &site);
+  std::size_t leave_around_buried(const WalledMesh &mesh, const Site &site);
   [[nodiscard]] std::size_t n_open_walls(const WalledMesh &mesh,
                                          const Site &site) const;
   void keep_connected(const WalledMesh &mesh, const Site &site);
@@ -103,7 +107,9 @@ private:
   [[nodiscard]] bool is_star_shaped(const WalledMesh &mesh, const Site &site) const;
   [[nodiscard]] CavityFlaw what_is_buried(const WalledMesh &mesh, const Site &site);
   [[nodiscard]] bool find_rims(const WalledMesh &mesh);
-  [[nodiscard]] bool is_on_boundary(const Segment &edge, const WalledMesh &mesh) const;
+  [[nodiscard]] bool is_buried(const Segment &edge, const WalledMesh &mesh,
+                               const Site &site) const;
+  void find_boundary_subsegments(const WalledMesh &mesh);
 };
 
 } // namespace anistar::generate

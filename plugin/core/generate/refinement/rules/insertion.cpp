@@ -90,11 +90,33 @@ Outcome Rules::insert(const Site &site) {
   default:
     ++insertions_->tetrahedra;
   }
-  for (Index c : cavity_.new_cells()) {
+  const bool is_reduced = cavity_.is_reduced();
+  if (is_reduced)
+    flips_.restore(mesh_, cavity_.new_cells());
+  for (Index c : cavity_.new_cells())
+    if (mesh_.is_alive(c) && !(is_reduced && flips_.has_made(c))) {
+      consider_walls(c);
+      consider_cell(c);
+    }
+  if (is_reduced)
+    consider_flipped();
+  return Outcome::inserted;
+}
+
+/// What flips have made of hidden cells may be encroached upon, large or bad.
+void Rules::consider_flipped() {
+  constexpr std::array<std::array<std::size_t, 2>, 6> pairs{
+      {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+  for (Index c : flips_.new_cells()) {
+    if (!mesh_.is_alive(c))
+      continue;
+    const Cell<3> &cell = mesh_.cells[c];
+    for (const auto &[i, j] : pairs)
+      if (mesh_.segment_of(cell[i], cell[j]) != none)
+        queues_.edges.push({{std::min(cell[i], cell[j]), std::max(cell[i], cell[j])}});
     consider_walls(c);
     consider_cell(c);
   }
-  return Outcome::inserted;
 }
 
 } // namespace anistar::generate

@@ -55,7 +55,7 @@ void Rules::queue_all() {
 /// Rule 1: an encroached constrained edge.
 bool Rules::apply_rule_1() {
   std::optional<WaitingEdge> waiting = queues_.edges.pop();
-  if (!waiting && try_put_off_edges())
+  if (!waiting && (retry_flips() || try_put_off_edges()))
     waiting = queues_.edges.pop();
   if (!waiting)
     return false;
@@ -66,6 +66,16 @@ bool Rules::apply_rule_1() {
       waiting->tries < most_tries_of_edge)
     put_off_.push_back({e, waiting->tries + 1});
   return true;
+}
+
+/// What long edges side by side have kept from being flipped, once they are split.
+bool Rules::retry_flips() {
+  if (!flips_.has_waiting() || insertions_->edges == edges_at_last_flip_)
+    return false;
+  edges_at_last_flip_ = insertions_->edges;
+  flips_.retry(mesh_);
+  consider_flipped();
+  return queues_.edges.size() > 0;
 }
 
 /// Where the point of one edge encroaches upon another, as with long ones side by side,

@@ -5,6 +5,7 @@
 
 #include "generate/refinement/mesh/cavity.h"
 #include "generate/refinement/mesh/facet_walk.h"
+#include "generate/refinement/mesh/flips.h"
 #include "generate/refinement/mesh/size_field.h"
 #include "generate/refinement/mesh/spheres.h"
 #include "generate/refinement/refinement.h"
@@ -85,6 +86,7 @@ private:
   SizeField size_;
   Queues queues_;
   Cavity cavity_;
+  Flips flips_;
   RefinementRecord record_;
   PickRule pick_rule_;
   PickRule wedge_pick_rule_{}; ///< on facets, for slivers between acute ones
@@ -93,7 +95,7 @@ private:
   bool eliminates_slivers_ = false;
   std::int32_t n_regions_ = 0; ///< refinement regions so far
   std::vector<WaitingEdge> put_off_;
-  std::size_t edges_at_last_try_ = 0;
+  std::size_t edges_at_last_try_ = 0, edges_at_last_flip_ = 0;
   std::map<Segment, std::size_t> blocked_at_; ///< number of points at the failure
   std::vector<Segment> edges_;
   std::vector<Index> fan_;
@@ -117,9 +119,11 @@ private:
     return Outcome::refused;
   }
   bool try_put_off_edges();
+  bool retry_flips();
   [[nodiscard]] bool is_blocked(const Segment &e) const;
   [[nodiscard]] bool takes(const Site &site, double r_tau, BestPick &best);
   Outcome insert(const Site &site);
+  void consider_flipped();
   Outcome insert_best(const BestPick &best, const Cause &cause, Refusal otherwise);
   [[nodiscard]] Site edge_site(const Segment &e, double fraction);
   [[nodiscard]] Site facet_site(HalfFacet f, const Vector<3> &x) const;
