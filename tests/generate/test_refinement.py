@@ -249,6 +249,7 @@ def test_edges_of_plates_near_to_each_other_are_split():
     assert record["encroached"]["edges"] == 0
     assert record["above_bound"] == 0
     assert record["not_delaunay"] == 0
+    assert record["edge_lemma"]["violated"] == record["facet_lemma"]["violated"] == 0
     assert_locally_delaunay(made)
 
 

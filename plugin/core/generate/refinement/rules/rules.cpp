@@ -206,9 +206,11 @@ Outcome Rules::conditionally_refine_facet(HalfFacet f, const Cause &cause) {
         !cavity_.contains(f.cell()))
       continue;
     find_encroached_edges(site.x);
+    const double r_v = cavity_.nearest_vertex(mesh_, site.x);
+    // a vertex may be in the diametral ball of f, off its plane
+    rejected.r_rejected = std::min(rejected.r_rejected, r_v);
     if (!edges_.empty())
       return refine_encroached_edges(rejected);
-    const double r_v = cavity_.nearest_vertex(mesh_, site.x);
     if (!cause.needs_no_longer && !cause.frees_facet && r_v <= cause.r_g)
       return refuse(Refusal::facet_not_longer);
     if (takes(site, cause.is_in_wedge ? any_radius : r_f, best))
@@ -251,6 +253,7 @@ Outcome Rules::conditionally_refine_tet(Index t) {
     if (cavity_.gather(mesh_, site) != CavityFlaw::no_flaw || !cavity_.contains(t))
       continue;
     find_encroached_edges(c);
+    cause.r_rejected = std::min(cause.r_rejected, cavity_.nearest_vertex(mesh_, c));
     if (!edges_.empty())
       return refine_encroached_edges(cause);
     if (const auto facets = encroached_facets(c); !facets.empty())
