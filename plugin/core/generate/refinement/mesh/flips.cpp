@@ -10,6 +10,16 @@ namespace {
 /// Of one call, so that it ends whatever happens.
 constexpr std::size_t most_flips = 100000;
 
+/// Points in a plane on a circle, but for round-off, are of no sphere's inside, and
+/// what is flat by that much is no cell: around holes flips would make such cells.
+bool is_flat(const Simplex<3> &s) {
+  double longest = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j)
+      longest = std::max(longest, (s[i] - s[j]).squaredNorm());
+  return volume_determinant<3>(s) <= on_sphere * longest * std::sqrt(longest);
+}
+
 } // namespace
 
 bool is_locally_delaunay(const WalledMesh &mesh, HalfFacet h) {
@@ -65,8 +75,11 @@ std::optional<Flips::Flip> Flips::flip_of(const WalledMesh &mesh, HalfFacet h) c
   for (std::size_t k = 0; k < 3; ++k) {
     Cell<3> cell{f[0], f[1], f[2], a};
     cell[k] = b;
-    const Orientation turn = orientation<3>({mesh.points[cell[0]], mesh.points[cell[1]],
-                                             mesh.points[cell[2]], mesh.points[a]});
+    const Simplex<3> s{mesh.points[cell[0]], mesh.points[cell[1]], mesh.points[cell[2]],
+                       mesh.points[a]};
+    const Orientation turn = orientation<3>(s);
+    if (turn == Orientation::positive && is_flat(s))
+      return {};
     if (turn == Orientation::positive)
       flip.born.push_back(cell);
     else if (turn == Orientation::degenerate || flip.open_corner < 3)
