@@ -71,6 +71,8 @@ std::optional<Flips::Flip> Flips::flip_of(const WalledMesh &mesh, HalfFacet h) c
   const HalfFacet other = mesh.opposite(h);
   const Facet<3> f = mesh.facet(h);
   const Index a = mesh.apex(h), b = mesh.apex(other);
+  const bool is_by_rounding =
+      !encroaches(mesh.points[b], circumscribed_ball(mesh.simplex(h.cell())));
   Flip flip{{h.cell(), other.cell()}, {}, 3};
   for (std::size_t k = 0; k < 3; ++k) {
     Cell<3> cell{f[0], f[1], f[2], a};
@@ -78,7 +80,7 @@ std::optional<Flips::Flip> Flips::flip_of(const WalledMesh &mesh, HalfFacet h) c
     const Simplex<3> s{mesh.points[cell[0]], mesh.points[cell[1]], mesh.points[cell[2]],
                        mesh.points[a]};
     const Orientation turn = orientation<3>(s);
-    if (turn == Orientation::positive && is_flat(s))
+    if (turn == Orientation::positive && is_by_rounding && is_flat(s))
       return {};
     if (turn == Orientation::positive)
       flip.born.push_back(cell);
