@@ -107,10 +107,19 @@ def _unscaled(made: dict[str, Any], plc: PLC, scale: float) -> Constrained:
 
 
 def _warnings(counts: dict[str, int]) -> tuple[str, ...]:
-    flat = counts["flat_left"]
-    if flat == 0:
-        return ()
-    return (f"{flat} cells of the constrained mesh are flat: points are too near to a plane",)
+    on_flat_walls = counts["flat_on_flat_walls"]
+    near_planes = counts["flat_left"] - on_flat_walls
+    warnings = []
+    if near_planes:
+        warnings.append(
+            f"{near_planes} cells of the constrained mesh are flat: points are too near to a plane"
+        )
+    if on_flat_walls:
+        warnings.append(
+            f"{on_flat_walls} cells of the constrained mesh are flat, as they are on triangles of "
+            "facets that have no area to speak of"
+        )
+    return tuple(warnings)
 
 
 def _scaled(points: Floats) -> tuple[Floats, float]:

@@ -106,7 +106,9 @@ std::map<std::string, std::size_t> as_map(const ConstrainedCounts &counts) {
           {"rejections", counts.rejections},
           {"peeled", counts.peeled},
           {"removed", counts.removed},
+          {"steiner_points_in_volumes", counts.steiner_points_in_volumes},
           {"flat_left", counts.flat_left},
+          {"flat_on_flat_walls", counts.flat_on_flat_walls},
           {"moved", counts.moved},
           {"predicates", counts.predicates},
           {"exact_predicates", counts.exact_predicates}};

@@ -94,7 +94,9 @@ Constrained constrained_tetrahedralisation(const Plc &plc,
   counts.peeled = flat.peeled;
   counts.removed = flat.swapped;
   counts.moved = flat.moved;
+  counts.steiner_points_in_volumes = flat.inserted;
   counts.flat_left = flat.left;
+  counts.flat_on_flat_walls = flat.on_flat_walls;
   counts.predicates = points.counts().asked;
   counts.exact_predicates = points.counts().exact;
   return {output(points, mesh, facets, regions), counts};

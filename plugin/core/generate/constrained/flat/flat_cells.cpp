@@ -14,8 +14,6 @@ namespace {
 constexpr double flat = 1e-9;
 /// What is on two triangles of a nearly planar facet is flatter than that.
 constexpr double flat_on_facet = 1e-2;
-/// A swap is worth it if the worst cell becomes better by so much, and above the least.
-constexpr double least_gain = 10, least_swapped = 1e-8;
 /// A swap that makes no cell flatter than that may be made for the sake of another.
 constexpr double harmless = 1e-4;
 constexpr int most_passes = 4;
@@ -26,7 +24,7 @@ FlatCells::FlatCells(ExactPoints &points, GhostMesh &mesh, const FacetTriangles 
                      PerCell<Index> &regions)
     : points_(points), mesh_(mesh), facets_(facets), regions_(regions),
       facet_of_plane_(facets.facets_of_planes()), swaps_(points, mesh, regions),
-      moves_(points, mesh, regions) {}
+      moves_(points, mesh, regions), volume_points_(points, mesh, facets, regions) {}
 
 bool FlatCells::is_inside(Index c) const {
   return mesh_.is_alive(c) && regions_[c] != outside;
@@ -50,7 +48,16 @@ FlatCells::Counts FlatCells::remove(bool may_peel, Monitor &monitor) {
     if (!is_new)
       break;
   }
-  counts_.left = flat_cells(flat).size();
+  // not before the moves, which know nothing of points that depend on others
+  for (const Index c : flat_cells(flat)) {
+    monitor.insist(points_.size());
+    if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < flat)
+      insert(c);
+  }
+  for (const Index c : flat_cells(flat)) {
+    ++counts_.left;
+    counts_.on_flat_walls += has_flat_wall(c);
+  }
   return counts_;
 }
 
@@ -60,11 +67,6 @@ std::vector<Index> FlatCells::flat_cells(double bound) const {
     if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < bound)
       found.push_back(c);
   return found;
-}
-
-bool FlatCells::is_segment(Index a, Index b) const {
-  const Index edge = facets_.find(a, b);
-  return edge != none && facets_.is_required(edge) && !facets_.is_flat(edge);
 }
 
 bool FlatCells::is_on_wall(Index a, Index b) const {
@@ -89,8 +91,9 @@ std::optional<FlatCells::Peel> FlatCells::peel_of(Index c) const {
   const Cell<3> &cell = mesh_.cell(c);
   if (facet_of_plane_[mesh_.wall(one)] != facet_of_plane_[mesh_.wall(other)] ||
       regions_[mesh_.opposite(one).cell()] != regions_[mesh_.opposite(other).cell()] ||
-      is_segment(cell[peel.k], cell[peel.l]) ||
-      is_segment(cell[peel.i], cell[peel.j]) || is_on_wall(cell[peel.i], cell[peel.j]))
+      facets_.is_segment(cell[peel.k], cell[peel.l]) ||
+      facets_.is_segment(cell[peel.i], cell[peel.j]) ||
+      is_on_wall(cell[peel.i], cell[peel.j]))
     return std::nullopt;
   return peel;
 }
@@ -146,7 +149,7 @@ std::vector<Swap> FlatCells::swaps_at(Index c) {
   for (std::size_t i = 0; i < 4; ++i) {
     note(swaps_.without_facet({c, i}));
     for (std::size_t j = i + 1; j < 4; ++j)
-      if (!is_segment(cell[i], cell[j]))
+      if (!facets_.is_segment(cell[i], cell[j]))
         note(swaps_.without_edge(cell[i], cell[j]));
   }
   return found;
@@ -168,6 +171,26 @@ bool FlatCells::move(Index c) {
   const bool is_better = moves_.improve(c);
   counts_.moved += is_better;
   return is_better;
+}
+
+/// Makes a star of cells at a new point, which takes the place of cells about a flat
+/// one.
+void FlatCells::insert(Index c) {
+  if (const auto star = volume_points_.star_in_place_of(c)) {
+    make(*star);
+    ++counts_.inserted;
+  }
+}
+
+/// Whether a wall of a cell has no area to speak of: then no other cells are better.
+bool FlatCells::has_flat_wall(Index c) const {
+  for (std::size_t i = 0; i < 4; ++i) {
+    const HalfFacet h(c, i);
+    const auto [u, v, w] = mesh_.facet(h);
+    if (mesh_.wall(h) != none && shape_of(points_, u, v, w) < flat)
+      return true;
+  }
+  return false;
 }
 
 /// The edges of the cells round the edges of a flat cell.
@@ -197,7 +220,7 @@ std::vector<Segment> FlatCells::edges_about(Index c) const {
 /// Makes room by a harmless swap beside a cell that cannot be swapped as things are.
 bool FlatCells::swap_after_another(Index c) {
   for (const auto &[a, b] : edges_about(c)) {
-    if (is_segment(a, b))
+    if (facets_.is_segment(a, b))
       continue;
     const auto first = swaps_.without_edge(a, b);
     if (!first || first->least_after < harmless ||
@@ -212,11 +235,6 @@ bool FlatCells::swap_after_another(Index c) {
     make(back);
   }
   return false;
-}
-
-bool FlatCells::is_worth(const Swap &swap) const {
-  return swap.least_after > least_swapped &&
-         swap.least_after > least_gain * swap.least_before;
 }
 
 std::vector<Index> FlatCells::make(const Swap &swap) {
