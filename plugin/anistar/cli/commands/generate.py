@@ -7,8 +7,8 @@ from typing import Any
 
 from ...base.errors import FormatError
 from ...formats import read as read_mesh
-from ...formats.suffixes import suffix_of
 from ...formats import read_metric, write
+from ...formats.suffixes import suffix_of
 from ...generating.generate import generate
 from ...generating.report import GenerateReport
 from .. import console
