@@ -17,6 +17,7 @@ constexpr double flat_on_facet = 1e-2;
 /// A swap that makes no cell flatter than that may be made for the sake of another.
 constexpr double harmless = 1e-4;
 constexpr int most_passes = 4;
+constexpr int most_failures = 1000; ///< of points in the volume
 
 } // namespace
 
@@ -48,12 +49,7 @@ FlatCells::Counts FlatCells::remove(bool may_peel, Monitor &monitor) {
     if (!is_new)
       break;
   }
-  // not before the moves, which know nothing of points that depend on others
-  for (const Index c : flat_cells(flat)) {
-    monitor.insist(points_.size());
-    if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < flat)
-      insert(c);
-  }
+  insert_points(monitor); // after the moves, which would have to move these along
   for (const Index c : flat_cells(flat)) {
     ++counts_.left;
     counts_.on_flat_walls += has_flat_wall(c);
@@ -173,13 +169,26 @@ bool FlatCells::move(Index c) {
   return is_better;
 }
 
+/// Gives up after many cells that no point helps, as each takes a thousand trials.
+void FlatCells::insert_points(Monitor &monitor) {
+  int failures = 0;
+  for (const Index c : flat_cells(flat)) {
+    monitor.insist(points_.size());
+    if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < flat && !has_flat_wall(c) &&
+        !insert_point(c) && ++failures == most_failures)
+      return;
+  }
+}
+
 /// Makes a star of cells at a new point, which takes the place of cells about a flat
 /// one.
-void FlatCells::insert(Index c) {
-  if (const auto star = volume_points_.star_in_place_of(c)) {
-    make(*star);
-    ++counts_.inserted;
-  }
+bool FlatCells::insert_point(Index c) {
+  const auto star = volume_points_.star_in_place_of(c);
+  if (!star)
+    return false;
+  make(*star);
+  ++counts_.inserted;
+  return true;
 }
 
 /// Whether a wall of a cell has no area to speak of: then no other cells are better.
