@@ -202,33 +202,9 @@ bool FlatCells::has_flat_wall(Index c) const {
   return false;
 }
 
-/// The edges of the cells round the edges of a flat cell.
-std::vector<Segment> FlatCells::edges_about(Index c) const {
-  std::vector<Segment> found;
-  std::vector<HalfFacet> ring;
-  const Cell<3> &cell = mesh_.cell(c);
-  const auto note = [&](const Cell<3> &beside) {
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j)
-        found.push_back(
-            {std::min(beside[i], beside[j]), std::max(beside[i], beside[j])});
-  };
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = i + 1; j < 4; ++j) {
-      mesh_.ring({cell[i], cell[j], c}, ring);
-      for (const HalfFacet leave : ring)
-        if (is_inside(leave.cell()))
-          note(mesh_.cell(leave.cell()));
-    }
-  std::ranges::sort(found);
-  const auto rest = std::ranges::unique(found);
-  found.erase(rest.begin(), rest.end());
-  return found;
-}
-
 /// Makes room by a harmless swap beside a cell that cannot be swapped as things are.
 bool FlatCells::swap_after_another(Index c) {
-  for (const auto &[a, b] : edges_about(c)) {
+  for (const auto &[a, b] : swaps_.edges_about(c)) {
     if (facets_.is_segment(a, b))
       continue;
     const auto first = swaps_.without_edge(a, b);
