@@ -17,6 +17,7 @@ constexpr double flat_on_facet = 1e-2;
 /// A swap that makes no cell flatter than that may be made for the sake of another.
 constexpr double harmless = 1e-4;
 constexpr int most_passes = 4;
+constexpr int most_failures = 1000; ///< of points in the volume
 
 } // namespace
 
@@ -48,12 +49,7 @@ FlatCells::Counts FlatCells::remove(bool may_peel, Monitor &monitor) {
     if (!is_new)
       break;
   }
-  // not before the moves, which know nothing of points that depend on others
-  for (const Index c : flat_cells(flat)) {
-    monitor.insist(points_.size());
-    if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < flat)
-      insert(c);
-  }
+  insert_points(monitor); // after the moves, which would have to move these along
   for (const Index c : flat_cells(flat)) {
     ++counts_.left;
     counts_.on_flat_walls += has_flat_wall(c);
@@ -173,13 +169,26 @@ bool FlatCells::move(Index c) {
   return is_better;
 }
 
+/// Gives up after many cells that no point helps, as each takes a thousand trials.
+void FlatCells::insert_points(Monitor &monitor) {
+  int failures = 0;
+  for (const Index c : flat_cells(flat)) {
+    monitor.insist(points_.size());
+    if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < flat && !has_flat_wall(c) &&
+        !insert_point(c) && ++failures == most_failures)
+      return;
+  }
+}
+
 /// Makes a star of cells at a new point, which takes the place of cells about a flat
 /// one.
-void FlatCells::insert(Index c) {
-  if (const auto star = volume_points_.star_in_place_of(c)) {
-    make(*star);
-    ++counts_.inserted;
-  }
+bool FlatCells::insert_point(Index c) {
+  const auto star = volume_points_.star_in_place_of(c);
+  if (!star)
+    return false;
+  make(*star);
+  ++counts_.inserted;
+  return true;
 }
 
 /// Whether a wall of a cell has no area to speak of: then no other cells are better.
@@ -193,33 +202,9 @@ bool FlatCells::has_flat_wall(Index c) const {
   return false;
 }
 
-/// The edges of the cells round the edges of a flat cell.
-std::vector<Segment> FlatCells::edges_about(Index c) const {
-  std::vector<Segment> found;
-  std::vector<HalfFacet> ring;
-  const Cell<3> &cell = mesh_.cell(c);
-  const auto note = [&](const Cell<3> &beside) {
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j)
-        found.push_back(
-            {std::min(beside[i], beside[j]), std::max(beside[i], beside[j])});
-  };
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = i + 1; j < 4; ++j) {
-      mesh_.ring({cell[i], cell[j], c}, ring);
-      for (const HalfFacet leave : ring)
-        if (is_inside(leave.cell()))
-          note(mesh_.cell(leave.cell()));
-    }
-  std::ranges::sort(found);
-  const auto rest = std::ranges::unique(found);
-  found.erase(rest.begin(), rest.end());
-  return found;
-}
-
 /// Makes room by a harmless swap beside a cell that cannot be swapped as things are.
 bool FlatCells::swap_after_another(Index c) {
-  for (const auto &[a, b] : edges_about(c)) {
+  for (const auto &[a, b] : swaps_.edges_about(c)) {
     if (facets_.is_segment(a, b))
       continue;
     const auto first = swaps_.without_edge(a, b);

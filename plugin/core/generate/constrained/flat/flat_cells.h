@@ -57,9 +57,9 @@ private:
   bool swap(Index c);
   bool swap_after_another(Index c);
   bool move(Index c);
-  void insert(Index c);
+  void insert_points(Monitor &monitor);
+  bool insert_point(Index c);
   [[nodiscard]] bool has_flat_wall(Index c) const;
-  [[nodiscard]] std::vector<Segment> edges_about(Index c) const;
   [[nodiscard]] std::vector<Swap> swaps_at(Index c);
   std::vector<Index> make(const Swap &swap);
 };

@@ -141,4 +141,26 @@ std::optional<Swap> Swaps::without_facet(HalfFacet h) const {
   return checked(points_, mesh_, {h.cell(), other.cell()}, std::move(cells));
 }
 
+std::vector<Segment> Swaps::edges_about(Index c) {
+  std::vector<Segment> found;
+  const Cell<3> &cell = mesh_.cell(c);
+  const auto note = [&](const Cell<3> &beside) {
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j)
+        found.push_back(
+            {std::min(beside[i], beside[j]), std::max(beside[i], beside[j])});
+  };
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      mesh_.ring({cell[i], cell[j], c}, ring_);
+      for (const HalfFacet leave : ring_)
+        if (regions_[leave.cell()] != outside)
+          note(mesh_.cell(leave.cell()));
+    }
+  std::ranges::sort(found);
+  const auto rest = std::ranges::unique(found);
+  found.erase(rest.begin(), rest.end());
+  return found;
+}
+
 } // namespace anistar::generate

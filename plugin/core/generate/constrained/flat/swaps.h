@@ -38,6 +38,8 @@ public:
   [[nodiscard]] std::optional<Swap> without_edge(Index a, Index b);
   /// Joins the apexes on both sides of a facet that is no wall.
   [[nodiscard]] std::optional<Swap> without_facet(HalfFacet h) const;
+  /// The edges of the cells round the edges of a cell.
+  [[nodiscard]] std::vector<Segment> edges_about(Index c);
 
 private:
   /// More cells round an edge are hardly ever worth the search.
