@@ -29,7 +29,8 @@ class Constrained:
     Attributes
     ----------
     points : (n, 3) float64
-        Those of the complex first, as they were, then the Steiner points.
+        Those of the complex first, as they were, then the Steiner points. Some of these are of no
+        cell: they are ends between which others in the volume were placed.
     cells : (m, 4) int32
     cell_tags : (m,) int32
         The tag of a region with a seed, its winding number, or else a number from one on.
