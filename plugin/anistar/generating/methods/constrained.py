@@ -28,8 +28,8 @@ class Constrained(Pieces):
     """Tetrahedra that conform to a complex, and how they came about.
 
     The tag of a cell is that of a region with a seed, its winding number, or else a number from one
-    on; walls are turned as the facets are. Some Steiner points are of no cell: they are ends between
-    which others in the volume were placed.
+    on; walls are turned as the facets are. Some Steiner points are of no cell: they are ends
+    between which others in the volume were placed.
 
     Attributes
     ----------
