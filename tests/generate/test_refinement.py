@@ -171,6 +171,18 @@ def test_wedges_stay_as_coarse_as_they_are(degrees):
     assert made.record["acute_pairs"] == 1
 
 
+@pytest.mark.parametrize(
+    ("plc", "size"),
+    [(wedge(10), 0.14), (wedge(10), 0.07), (wedge(5), 0.14), (wedge(2), 0.14), (book(20), 0.17)],
+    ids=["10", "10-fine", "5", "2", "book"],
+)
+def test_small_angles_with_a_size_stay_above_half_of_the_input(plc, size):
+    pieces, made = refine(plc, size)
+    assert_valid(made, pieces)
+    assert made.stop_reason == "finished"
+    assert least_dihedral(made) >= 0.5 * least_dihedral(pieces)
+
+
 def test_a_size_is_met_in_a_wedge_as_well():
     pieces, made = refine(wedge(10), 0.2)
     assert_valid(made, pieces)

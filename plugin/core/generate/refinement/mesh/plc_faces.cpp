@@ -10,9 +10,10 @@ namespace {
 /// begin to encroach upon the other for ever; the margin is measured (studies/cdt.md).
 constexpr double cos_acute_dihedral = 0.34202014332566873; // of 70 degrees
 
-/// Whether the inside of the domain between two walls at an edge has an angle that is
-/// acute in this sense.
-bool is_acute(const WalledMesh &mesh, const WallEdge &edge, HalfFacet next) {
+/// The cosine of the angle that the inside of the domain has between two walls at an
+/// edge, if it is acute in this sense.
+std::optional<double> acute_cosine(const WalledMesh &mesh, const WallEdge &edge,
+                                   HalfFacet next) {
   const auto [x, y, u] = mesh.turned(edge);
   const Index w = mesh.third_vertex(next, x, y);
   const Vector<3> &o = mesh.points[x], e = mesh.points[y] - o;
@@ -21,11 +22,13 @@ bool is_acute(const WalledMesh &mesh, const WallEdge &edge, HalfFacet next) {
     return r - e * (r.dot(e) / e.squaredNorm());
   };
   const Vector<3> r = across(u), s = across(w);
-  if (r.dot(s) <= cos_acute_dihedral * std::sqrt(r.squaredNorm() * s.squaredNorm()))
-    return false;
+  const double cosine = r.dot(s) / std::sqrt(r.squaredNorm() * s.squaredNorm());
   // the other side of the same two half-planes has the rest of the full angle
-  return orientation(mesh.points[x], mesh.points[y], mesh.points[u], mesh.points[w]) ==
-         Orientation::positive;
+  if (cosine <= cos_acute_dihedral ||
+      orientation(mesh.points[x], mesh.points[y], mesh.points[u], mesh.points[w]) !=
+          Orientation::positive)
+    return {};
+  return cosine;
 }
 
 } // namespace
@@ -106,9 +109,15 @@ void PlcFaces::find_acute_pairs(const WalledMesh &mesh) {
         continue;
       const HalfFacet next = mesh.next_wall(edge);
       const Index other = next.exists() ? mesh.wall(next) : none;
-      if (other != none && other != facet && is_acute(mesh, edge, next)) {
+      if (other == none || other == facet)
+        continue;
+      if (const std::optional<double> cosine = acute_cosine(mesh, edge, next)) {
         pairs.push_back({facet, other});
         pairs.push_back({other, facet});
+        for (const IndexLists::Pair &pair : {pairs.back(), pairs.end()[-2]}) {
+          double &largest = acute_cosines_.try_emplace(pair, *cosine).first->second;
+          largest = std::max(largest, *cosine);
+        }
       }
     }
   });
@@ -164,17 +173,19 @@ bool PlcFaces::is_across_acute_angle(const Carrier &carrier, Index facet) const 
                      [&](Index other) { return are_acute(facet, other); });
 }
 
-bool PlcFaces::join_acute_facets(const Carrier &one, const Carrier &other) const {
+std::optional<double> PlcFaces::cosine_between(const Carrier &one,
+                                               const Carrier &other) const {
+  std::optional<double> largest;
   if (n_acute_pairs_ == 0)
-    return false;
-  const auto facets = facets_of(one);
-  return std::any_of(facets.begin(), facets.end(), [&](Index facet) {
+    return largest;
+  for (Index facet : facets_of(one)) {
     if (acute_[facet].empty() || is_on(other, facet))
-      return false;
-    const auto others = facets_of(other);
-    return std::any_of(others.begin(), others.end(),
-                       [&](Index g) { return are_acute(facet, g) && !is_on(one, g); });
-  });
+      continue;
+    for (Index g : facets_of(other))
+      if (are_acute(facet, g) && !is_on(one, g))
+        largest = std::max(largest, std::optional(acute_cosines_.at({facet, g})));
+  }
+  return largest;
 }
 
 } // namespace anistar::generate

@@ -6,6 +6,8 @@
 #include "generate/refinement/mesh/carrier.h"
 #include "generate/refinement/mesh/walled_mesh.h"
 
+#include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,7 +61,12 @@ public:
   /// this one itself.
   [[nodiscard]] bool is_across_acute_angle(const Carrier &carrier, Index facet) const;
   /// Whether two vertices are on two facets of an acute pair, neither on both.
-  [[nodiscard]] bool join_acute_facets(const Carrier &one, const Carrier &other) const;
+  [[nodiscard]] bool join_acute_facets(const Carrier &one, const Carrier &other) const {
+    return cosine_between(one, other).has_value();
+  }
+  /// The cosine of the least angle of the acute pairs that they are on so.
+  [[nodiscard]] std::optional<double> cosine_between(const Carrier &one,
+                                                     const Carrier &other) const;
 
   [[nodiscard]] Projection projection(Index facet) const { return projections_[facet]; }
   [[nodiscard]] std::size_t n_acute_pairs() const { return n_acute_pairs_; }
@@ -68,6 +75,7 @@ public:
 
 private:
   IndexLists vertex_facets_, segment_facets_, facet_vertices_, acute_;
+  std::map<IndexLists::Pair, double> acute_cosines_; ///< the largest of each pair
   std::vector<Projection> projections_;
   std::vector<Segment> ends_;
   std::size_t n_acute_pairs_ = 0;

@@ -9,6 +9,8 @@ namespace {
 /// tried.
 constexpr PickRule centre_first{
     .delta = .05, .n_picks = 6, .must_avoid_slivers = false};
+/// In place of r_tau where no rule refines the larger slivers either.
+constexpr double any_radius = std::numeric_limits<double>::infinity();
 constexpr int most_tries_of_edge = 5;
 /// As a fraction of the points, inverted.
 constexpr std::size_t growth_before_retry = 50;
@@ -141,7 +143,8 @@ Outcome Rules::refine_edge(const Segment &edge, const Cause &cause) {
   while (picks.has_next()) {
     const double offset = .5 * picks.next(1)[0];
     const Site site = edge_site(e, is_at_cluster ? middle : middle + offset);
-    if (cavity_.gather(mesh_, site) == CavityFlaw::no_flaw && takes(site, r_e, best))
+    if (cavity_.gather(mesh_, site) == CavityFlaw::no_flaw &&
+        takes(site, cause.is_in_wedge ? any_radius : r_e, best))
       return insert(site);
     if (is_at_cluster)
       break;
@@ -171,7 +174,8 @@ Outcome Rules::conditionally_refine_facet(HalfFacet f, const Cause &cause) {
   const Vector<3> along = (mesh_.points[v[1]] - mesh_.points[v[0]]).normalized();
   const Vector<3> across =
       (mesh_.points[v[2]] - mesh_.points[v[0]]).cross(along).cross(along).normalized();
-  Picks picks(pick_rule_, settings_.seed, n_regions_++);
+  Picks picks(cause.is_in_wedge ? wedge_pick_rule_ : pick_rule_, settings_.seed,
+              n_regions_++);
   BestPick best;
   while (picks.has_next()) {
     const Vector<3> offset = picks.next(2);
@@ -197,7 +201,7 @@ Outcome Rules::conditionally_refine_facet(HalfFacet f, const Cause &cause) {
     const double r_v = cavity_.nearest_vertex(mesh_, site.x);
     if (!cause.needs_no_longer && !cause.frees_facet && r_v <= cause.r_g)
       return refuse(Refusal::facet_not_longer);
-    if (takes(site, r_f, best))
+    if (takes(site, cause.is_in_wedge ? any_radius : r_f, best))
       return insert(site);
   }
   return insert_best(best, cause, Refusal::no_cavity);
@@ -209,14 +213,19 @@ Outcome Rules::conditionally_refine_facet(HalfFacet f, const Cause &cause) {
 Outcome Rules::conditionally_refine_tet(Index t) {
   const CellShape shape = shape_of(t);
   const bool by_size = is_large(shape);
-  const bool by_ratio = shape.ratio() > settings_.bound;
+  bool by_ratio = shape.ratio() > settings_.bound, is_in_wedge = false;
   if (!by_size)
-    if (const std::optional<Refusal> refusal = acute_refusal(t, shape))
-      return refuse(*refusal);
+    if (const std::optional<Refusal> refusal = acute_refusal(t, shape)) {
+      if (by_ratio && !(eliminates_slivers_ && is_flatter_than_its_wedge(t)))
+        return refuse(*refusal);
+      by_ratio = false; // its ratio stays, but its angles may become better
+      is_in_wedge = true;
+    }
   const double r_t = shape.ball.radius;
   Cause cause{.r_g = mesh_.insertion_radius[shape.shortest_edge[1]],
               .needs_no_longer = by_size || !by_ratio,
-              .must_improve = !by_size && !by_ratio};
+              .must_improve = !by_size && !by_ratio,
+              .is_in_wedge = is_in_wedge};
   Picks picks(pick_rule_, settings_.seed, n_regions_++);
   BestPick best;
   while (picks.has_next()) {
@@ -236,7 +245,7 @@ Outcome Rules::conditionally_refine_tet(Index t) {
       return refine_encroached_edges(cause);
     if (const auto facets = encroached_facets(c); !facets.empty())
       return refine_encroached_facets(facets, c, cause);
-    if (takes(site, r_t, best))
+    if (takes(site, is_in_wedge ? any_radius : r_t, best))
       return insert(site);
   }
   return insert_best(best, cause, Refusal::no_cavity);
@@ -252,8 +261,6 @@ std::optional<Refusal> Rules::acute_refusal(Index t, const CellShape &shape) con
   };
   if (join(shape.shortest_edge[0], shape.shortest_edge[1]))
     return Refusal::acute_shortest_edge;
-  if (shape.ratio() <= settings_.bound)
-    return {}; // a sliver, which is refined only where that helps
   const Cell<3> &cell = mesh_.cells[t];
   if (!std::all_of(cell.begin(), cell.end(),
                    [&](Index v) { return mesh_.carriers[v].is_on_facet(); }))

@@ -35,6 +35,7 @@ struct Cause {
   bool frees_facet =
       false; ///< p is a vertex of the complex or on a face disjoint from F
   bool must_improve = false; ///< a sliver: only for better dihedral angles
+  bool is_in_wedge = false;  ///< between acute facets: slivers of any size are avoided
 };
 
 class Rules {
@@ -86,7 +87,8 @@ private:
   Cavity cavity_;
   RefinementRecord record_;
   PickRule pick_rule_;
-  double floor_; ///< no shorter edge is made
+  PickRule wedge_pick_rule_{}; ///< on facets, for slivers between acute ones
+  double floor_;               ///< no shorter edge is made
   Insertions *insertions_;
   bool eliminates_slivers_ = false;
   std::int32_t n_regions_ = 0; ///< refinement regions so far
@@ -134,6 +136,7 @@ private:
   [[nodiscard]] double small_sliver_cosine(const Site &site, double r_tau) const;
   [[nodiscard]] double cavity_cosine() const;
   [[nodiscard]] bool is_sliver(Index t) const;
+  [[nodiscard]] bool is_flatter_than_its_wedge(Index t) const;
 };
 
 } // namespace anistar::generate

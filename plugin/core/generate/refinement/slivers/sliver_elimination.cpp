@@ -6,6 +6,14 @@
 #include <algorithm>
 
 namespace anistar::generate {
+namespace {
+
+/// The theorem that wants a small delta says nothing of acute facets. Measured on
+/// wedges and books of sizes .03 to .2: with .1 some slivers stay, with .5 points are
+/// put too near to others.
+constexpr double wedge_delta = .3;
+
+} // namespace
 
 /// Where a pick lies in a forbidden torus: the cosine of the least dihedral angle among
 /// the tetrahedra that it forms with a circumradius of at most C r_tau. Larger slivers
@@ -33,6 +41,19 @@ bool Rules::is_sliver(Index t) const {
   return largest_dihedral_cosine(mesh_.simplex(t)) > pick_rule_.sliver_cosine;
 }
 
+/// Whether its least dihedral angle is below half of the least angle of the acute pairs
+/// of facets that its vertices are on: that is not for the geometry's sake.
+bool Rules::is_flatter_than_its_wedge(Index t) const {
+  const Cell<3> &cell = mesh_.cells[t];
+  std::optional<double> cosine;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j)
+      cosine = std::max(cosine, faces_.cosine_between(mesh_.carriers[cell[i]],
+                                                      mesh_.carriers[cell[j]]));
+  return cosine &&
+         largest_dihedral_cosine(mesh_.simplex(t)) > std::sqrt(.5 * (1 + *cosine));
+}
+
 void Rules::begin_sliver_elimination() {
   const SliverSettings &slivers = settings_.slivers;
   double l_1 = std::numeric_limits<double>::infinity();
@@ -47,6 +68,8 @@ void Rules::begin_sliver_elimination() {
   pick_rule_ = {slivers.delta, slivers.n_picks, true,
                 elementary::sine_cosine(slivers.least_dihedral * degree).cosine,
                 slivers.C};
+  wedge_pick_rule_ = pick_rule_;
+  wedge_pick_rule_.delta = wedge_delta;
   insertions_ = &record_.sliver_elimination;
   eliminates_slivers_ = true;
   for (std::size_t c = 0; c < mesh_.cells.size(); ++c)
