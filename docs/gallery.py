@@ -16,6 +16,7 @@ ARGUMENTS = {
     "boundary_layer": "--dim 3 --complexities 500 1000 --sizes 8 13",
     "convection": "--complexities 125 250 500 --sizes 16 32",
     "cubic_reaction": "--dim 3 --complexities 500 1000 --sizes 8 13",
+    "heat_sink": "--complexities 250 500 1000",
     "moving_front": "--complexity 400 --end 0.2 --steps 40 --output {folder}/series.pvd",
     "outflow_layers": "--complexities 500 1000 2000 --sizes 8 16",
     "plate_with_hole": "--complexities 250 500 1000 --lengths 0.16 0.08",

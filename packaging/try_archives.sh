@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source packaging/find_python.sh
 
 readonly TRIED=$PWD/build/tried
-readonly LARGEST=3000000 # bytes of a wheel
+readonly LARGEST=4000000 # bytes of a wheel
 
 say() { printf 'wheel-test: %s\n' "$*" >&2; }
 

@@ -32,6 +32,7 @@ def spans(columns):
 SPANS, FLAGS = spans(slice(1, 2)), spans(slice(2, None))
 OPTIONS = (
     anistar.AdaptOptions,
+    anistar.GenerateOptions,
     anistar.LoopOptions,
     anistar.MetricOptions,
     anistar.RemeshOptions,
@@ -39,7 +40,10 @@ OPTIONS = (
     anistar.metric.RecoveryOptions,
 )
 KEYWORDS = {item.name for options in OPTIONS for item in fields(options)} | set(
-    inspect.signature(anistar.remesh).parameters
+    {
+        **inspect.signature(anistar.remesh).parameters,
+        **inspect.signature(anistar.generate).parameters,
+    }
 )
 COMMANDS = next(
     action.choices for action in parser()._actions if isinstance(action, argparse._SubParsersAction)

@@ -219,6 +219,123 @@ def nearest_in_metric3(
 ) -> NDArray[numpy.int32]:
     """The point nearest to each query in the query's own metric."""
 
+def constrained_tetrahedra(
+    *,
+    points: NDArray[numpy.float64],
+    triangles: NDArray[numpy.int32],
+    triangle_facets: NDArray[numpy.int32],
+    segments: NDArray[numpy.int32],
+    kept_points: NDArray[numpy.int32],
+    seeds: NDArray[numpy.float64],
+    seed_tags: NDArray[numpy.int32],
+    holes: NDArray[numpy.float64],
+    rule: str,
+    facets_may_flip: bool,
+    max_seconds: float,
+    callback: object | None,
+) -> dict[str, Any]:
+    """
+    Constrained Delaunay tetrahedra of a piecewise linear complex, as arrays by name.
+    """
+
+class Flaw(enum.Enum):
+    """What can be wrong with a complex."""
+
+    out_of_range = 0
+
+    repeated_point = 1
+
+    empty_edge = 2
+
+    repeated_edge = 3
+
+    degenerate_triangle = 4
+
+    repeated_triangle = 5
+
+    overlap = 6
+
+    crossing = 7
+
+    touching = 8
+
+    point_on_edge = 9
+
+    point_on_facet = 10
+
+    open_border = 11
+
+    thin_triangle = 12
+
+    near_miss = 13
+
+    crowded_edge = 14
+
+class Problem:
+    """Something that is wrong with a complex."""
+
+    @property
+    def flaw(self) -> Flaw: ...
+    @property
+    def triangles(self) -> list[int]: ...
+    @property
+    def edges(self) -> list[list[int]]: ...
+    @property
+    def points(self) -> list[int]: ...
+    @property
+    def where(self) -> list[float]: ...
+    @property
+    def measure(self) -> float: ...
+
+class Problems:
+    """What is wrong with a complex, a few of a kind."""
+
+    @property
+    def listed(self) -> list[Problem]: ...
+    @property
+    def totals(self) -> list[int]: ...
+    @property
+    def is_complete(self) -> bool: ...
+
+def check_plc(
+    points: NDArray[numpy.float64],
+    triangles: NDArray[numpy.int32],
+    triangle_facets: NDArray[numpy.int32],
+    segments: NDArray[numpy.int32],
+    points_kept: NDArray[numpy.int32],
+    listed: int,
+    near_distance: float,
+) -> Problems:
+    """What is wrong with a complex in space; `near_distance` in diagonals."""
+
+def check_pslg(
+    points: NDArray[numpy.float64],
+    segments: NDArray[numpy.int32],
+    points_kept: NDArray[numpy.int32],
+    listed: int,
+    near_distance: float,
+) -> Problems:
+    """What is wrong with segments and points in the plane."""
+
+def cut_triangles(
+    points: NDArray[numpy.float64], triangles: NDArray[numpy.int32]
+) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.int32]]:
+    """
+    Points, triangles and the source of each, cut where triangles meet others.
+    """
+
+def turned_triangles(
+    points: NDArray[numpy.float64], triangles: NDArray[numpy.int32]
+) -> tuple[NDArray[numpy.uint8], int, int]:
+    """
+    Which triangles to turn for an outer side, and the numbers of parts that are open and that have one side only.
+    """
+
+def wrap_triangles(
+    points: NDArray[numpy.float64], triangles: NDArray[numpy.int32], alpha: float, offset: float
+) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.int32]]:
+    """A closed surface around triangles."""
+
 def supermesh2(
     source_points: NDArray[numpy.float64],
     source_cells: NDArray[numpy.int32],
@@ -551,6 +668,9 @@ class Surface3:
         The (n, 3, 3) curvature tensors at the points: principal curvatures with their directions, of the most curved patch; zero off the surfaces.
         """
 
+def first_at_place(points: NDArray[numpy.float64]) -> NDArray[numpy.int32]:
+    """Of each point the first one that is exactly where it is."""
+
 def triangulated_facets(
     points: NDArray[numpy.float64],
     indices: NDArray[numpy.int32],
@@ -558,7 +678,7 @@ def triangulated_facets(
     facet_starts: NDArray[numpy.int64],
     edges: NDArray[numpy.int32],
     flatness: float,
-) -> tuple[NDArray[numpy.int32], NDArray[numpy.int32], NDArray[numpy.float64]]:
+) -> tuple:
     """
     The triangles of polygon facets, the facet of each, and how far the points of each facet lie from its plane.
     """
@@ -578,214 +698,11 @@ def surface_loops(
     triangles: NDArray[numpy.int32],
     owners: NDArray[numpy.int32],
     n_facets: int,
-) -> tuple[NDArray[numpy.int32], NDArray[numpy.int64], NDArray[numpy.int64]]:
-    """The loops around facets of triangles: (indices, loop_starts, facet_starts)."""
-
-def constrained_tetrahedra(
-    *,
-    points: NDArray[numpy.float64],
-    triangles: NDArray[numpy.int32],
-    triangle_facets: NDArray[numpy.int32],
-    segments: NDArray[numpy.int32],
-    kept_points: NDArray[numpy.int32],
-    seeds: NDArray[numpy.float64],
-    seed_tags: NDArray[numpy.int32],
-    holes: NDArray[numpy.float64],
-    rule: str,
-    facets_may_flip: bool,
-    max_seconds: float,
-    callback: object | None,
-) -> dict[str, Any]:
+) -> tuple:
     """
-    Constrained Delaunay tetrahedra of a piecewise linear complex, as arrays by name.
-    """
-def first_at_place(points: NDArray[numpy.float64]) -> NDArray[numpy.int32]:
-    """Of each point the first one that is exactly where it is."""
-
-class Flaw(enum.Enum):
-    """What can be wrong with a complex."""
-
-    out_of_range = 0
-    repeated_point = 1
-    empty_edge = 2
-    repeated_edge = 3
-    degenerate_triangle = 4
-    repeated_triangle = 5
-    overlap = 6
-    crossing = 7
-    touching = 8
-    point_on_edge = 9
-    point_on_facet = 10
-    open_border = 11
-    thin_triangle = 12
-    near_miss = 13
-    crowded_edge = 14
-
-class Problem:
-    """Something that is wrong with a complex."""
-
-    @property
-    def flaw(self) -> Flaw: ...
-    @property
-    def triangles(self) -> list[int]: ...
-    @property
-    def edges(self) -> list[tuple[int, int]]: ...
-    @property
-    def points(self) -> list[int]: ...
-    @property
-    def where(self) -> list[float]: ...
-    @property
-    def measure(self) -> float: ...
-
-class Problems:
-    """What is wrong with a complex, a few of a kind."""
-
-    @property
-    def listed(self) -> list[Problem]: ...
-    @property
-    def totals(self) -> list[int]: ...
-    @property
-    def is_complete(self) -> bool: ...
-
-def check_plc(
-    points: NDArray[numpy.float64],
-    triangles: NDArray[numpy.int32],
-    triangle_facets: NDArray[numpy.int32],
-    segments: NDArray[numpy.int32],
-    points_kept: NDArray[numpy.int32],
-    listed: int,
-    near_distance: float,
-) -> Problems:
-    """What is wrong with a complex in space; `near_distance` in diagonals."""
-
-def check_pslg(
-    points: NDArray[numpy.float64],
-    segments: NDArray[numpy.int32],
-    points_kept: NDArray[numpy.int32],
-    listed: int,
-    near_distance: float,
-) -> Problems:
-    """What is wrong with segments and points in the plane."""
-
-def cut_triangles(
-    points: NDArray[numpy.float64], triangles: NDArray[numpy.int32]
-) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.int32]]:
-    """
-    Points, triangles and the source of each, cut where triangles meet others.
+    The loops around facets of triangles: (indices, loop_starts, facet_starts).
     """
 
-def turned_triangles(
-    points: NDArray[numpy.float64], triangles: NDArray[numpy.int32]
-) -> tuple[NDArray[numpy.uint8], int, int]:
-    """
-    Which triangles to turn for an outer side, and the numbers of parts that are open and that have one side only.
-    """
-
-def wrap_triangles(
-    points: NDArray[numpy.float64],
-    triangles: NDArray[numpy.int32],
-    alpha: float,
-    offset: float,
-) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.int32]]:
-    """A closed surface around triangles."""
-class SliverSettings:
-    """What Li's elimination of slivers may choose."""
-
-    def __init__(self) -> None: ...
-
-    @property
-    def are_eliminated(self) -> bool: ...
-
-    @are_eliminated.setter
-    def are_eliminated(self, arg: bool, /) -> None: ...
-
-    @property
-    def least_dihedral(self) -> float: ...
-
-    @least_dihedral.setter
-    def least_dihedral(self, arg: float, /) -> None: ...
-
-    @property
-    def delta(self) -> float: ...
-
-    @delta.setter
-    def delta(self, arg: float, /) -> None: ...
-
-    @property
-    def rho_0(self) -> float: ...
-
-    @rho_0.setter
-    def rho_0(self, arg: float, /) -> None: ...
-
-    @property
-    def C(self) -> float: ...
-
-    @C.setter
-    def C(self, arg: float, /) -> None: ...
-
-    @property
-    def n_picks(self) -> int: ...
-
-    @n_picks.setter
-    def n_picks(self, arg: int, /) -> None: ...
-
-    def meet_conditions(self) -> bool: ...
-
-class RefinementSettings:
-    """What Delaunay refinement is told."""
-
-    def __init__(self) -> None: ...
-
-    @property
-    def bound(self) -> float: ...
-
-    @bound.setter
-    def bound(self, arg: float, /) -> None: ...
-
-    @property
-    def shortest_edge(self) -> float: ...
-
-    @shortest_edge.setter
-    def shortest_edge(self, arg: float, /) -> None: ...
-
-    @property
-    def slivers(self) -> SliverSettings: ...
-
-    @slivers.setter
-    def slivers(self, arg: SliverSettings, /) -> None: ...
-
-    @property
-    def max_vertices(self) -> int: ...
-
-    @max_vertices.setter
-    def max_vertices(self, arg: int, /) -> None: ...
-
-    @property
-    def max_seconds(self) -> float: ...
-
-    @max_seconds.setter
-    def max_seconds(self, arg: float, /) -> None: ...
-
-    @property
-    def seed(self) -> int: ...
-
-    @seed.setter
-    def seed(self, arg: int, /) -> None: ...
-
-def refined_tetrahedra(
-    *,
-    points: NDArray[numpy.float64],
-    cells: NDArray[numpy.int32],
-    cell_regions: NDArray[numpy.int32],
-    walls: NDArray[numpy.int32],
-    wall_facets: NDArray[numpy.int32],
-    edges: NDArray[numpy.int32],
-    edge_segments: NDArray[numpy.int32],
-    sizes: NDArray[numpy.float64],
-    settings: RefinementSettings,
-    callback: object | None,
-) -> dict[str, Any]:
-    """Tetrahedra after Delaunay refinement, and what the rules did, by name."""
 class Inside(enum.Enum):
     parity = 0
 
@@ -826,3 +743,77 @@ def refined_triangles(
     """
     A constrained mesh after Delaunay refinement, what was counted, and what ended it.
     """
+
+class SliverSettings:
+    """What Li's elimination of slivers may choose."""
+
+    def __init__(self) -> None: ...
+    @property
+    def are_eliminated(self) -> bool: ...
+    @are_eliminated.setter
+    def are_eliminated(self, arg: bool, /) -> None: ...
+    @property
+    def least_dihedral(self) -> float: ...
+    @least_dihedral.setter
+    def least_dihedral(self, arg: float, /) -> None: ...
+    @property
+    def delta(self) -> float: ...
+    @delta.setter
+    def delta(self, arg: float, /) -> None: ...
+    @property
+    def rho_0(self) -> float: ...
+    @rho_0.setter
+    def rho_0(self, arg: float, /) -> None: ...
+    @property
+    def C(self) -> float: ...
+    @C.setter
+    def C(self, arg: float, /) -> None: ...
+    @property
+    def n_picks(self) -> int: ...
+    @n_picks.setter
+    def n_picks(self, arg: int, /) -> None: ...
+    def meet_conditions(self) -> bool: ...
+
+class RefinementSettings:
+    """What Delaunay refinement is told."""
+
+    def __init__(self) -> None: ...
+    @property
+    def bound(self) -> float: ...
+    @bound.setter
+    def bound(self, arg: float, /) -> None: ...
+    @property
+    def shortest_edge(self) -> float: ...
+    @shortest_edge.setter
+    def shortest_edge(self, arg: float, /) -> None: ...
+    @property
+    def slivers(self) -> SliverSettings: ...
+    @slivers.setter
+    def slivers(self, arg: SliverSettings, /) -> None: ...
+    @property
+    def max_vertices(self) -> int: ...
+    @max_vertices.setter
+    def max_vertices(self, arg: int, /) -> None: ...
+    @property
+    def max_seconds(self) -> float: ...
+    @max_seconds.setter
+    def max_seconds(self, arg: float, /) -> None: ...
+    @property
+    def seed(self) -> int: ...
+    @seed.setter
+    def seed(self, arg: int, /) -> None: ...
+
+def refined_tetrahedra(
+    *,
+    points: NDArray[numpy.float64],
+    cells: NDArray[numpy.int32],
+    cell_regions: NDArray[numpy.int32],
+    walls: NDArray[numpy.int32],
+    wall_facets: NDArray[numpy.int32],
+    edges: NDArray[numpy.int32],
+    edge_segments: NDArray[numpy.int32],
+    sizes: NDArray[numpy.float64],
+    settings: RefinementSettings,
+    callback: object | None,
+) -> dict[str, Any]:
+    """Tetrahedra after Delaunay refinement, and what the rules did, by name."""

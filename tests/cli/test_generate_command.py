@@ -79,6 +79,11 @@ def test_what_is_wrong_is_told_in_one_line(part, tmp_path, capsys, words, messag
     assert not out.exists()
 
 
+def test_a_format_of_surfaces_is_refused_before_anything_is_made(part, capsys):
+    assert main(["generate", str(part), "-o", str(part)]) == 2
+    assert "no place for cells" in capsys.readouterr().err
+
+
 def test_a_surface_with_a_gap_is_refused_and_nothing_is_written(tmp_path, capsys):
     path, out = tmp_path / "open.stl", tmp_path / "out.msh"
     anistar.write_plc(path, anistar.PLC(CORNERS, facets=SIDES[1:]))

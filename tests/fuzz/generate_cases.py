@@ -13,7 +13,7 @@ METHODS = ("constrained", "remesh", "refine")
 MOST_VERTICES = 3000
 """No case has more points than this and a few."""
 
-ROUND_OFF = 1e-14
+ROUND_OFF = 1e-13
 """Of a coordinate, relative, as it moves points off their planes and changes volumes."""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -168,6 +169,27 @@ def nested_cubes(n: int) -> PLC:
         places.append(points)
         facets += [[8 * k + v for v in quad] for quad in quads]
     return PLC(np.vstack(places), facets=facets)
+
+
+def drum(n: int, rings: int = 2) -> tuple[Floats, list[list[int]]]:
+    """Return the points and the facets, turned outward, of a stack of regular prisms."""
+    angles = 2.0 * math.pi * np.arange(n) / n
+    heights = np.linspace(-1.0, 1.0, rings)
+    points = np.array([[math.cos(t), math.sin(t), z] for z in heights for t in angles])
+    sides = [(k * n + i, k * n + (i + 1) % n) for k in range(rings - 1) for i in range(n)]
+    top = (rings - 1) * n
+    facets = [[a, b, b + n, a + n] for a, b in sides]
+    facets += [list(range(n))[::-1], list(range(top, top + n))]
+    return points, facets
+
+
+def concentric(points: Floats, facets: Sequence[Sequence[int]], scale: float) -> PLC:
+    """Return a solid about the origin, hollow like a smaller copy of itself.
+
+    Corners of both that are next to each other lie on circles, so that Delaunay cells are flat.
+    """
+    inner = [[v + len(points) for v in facet] for facet in facets]
+    return PLC(np.vstack([points, scale * points]), facets=[*facets, *inner])
 
 
 def moved(plc: PLC, points: Floats) -> PLC:

@@ -355,3 +355,13 @@ def test_wishes_of_a_wrong_form_are_named(given, kind, message):
 def test_a_tuple_of_numbers_is_as_good_as_an_array():
     made = [anistar.generate(box(), kind([0.4] * 8)).mesh for kind in (tuple, np.array)]
     assert made[0].points.tobytes() == made[1].points.tobytes()
+
+
+@pytest.mark.parametrize("method", ["remesh", "refine"])
+def test_a_point_near_a_long_edge_makes_cells_small_there_and_not_at_its_ends(method):
+    points = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 1e-2]])
+    plc = anistar.PLC(points, edges=[[0, 1], [1, 2], [2, 3], [3, 0], [4, 2]])
+    made = anistar.generate(plc, method=method)
+    assert made.report.converged
+    assert made.report.shapes.angle_min > 20.0
+    assert made.mesh.n_points < 500

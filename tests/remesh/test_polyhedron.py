@@ -108,7 +108,7 @@ def test_a_projection_contradicts_a_polyhedron():
 
 
 def test_the_shape_is_checked_and_read_from_a_dict():
-    with pytest.raises(ValueError, match='shape must be "smooth" or "polyhedron", got \'round\''):
+    with pytest.raises(ValueError, match='"smooth", "polyhedron", "faceted", got \'round\''):
         RemeshOptions(shape="round")
     options = AdaptOptions.from_dict({"shape": "polyhedron", "target_complexity": 10})
     assert options.remesh.shape == "polyhedron"

@@ -5,6 +5,7 @@
 #include "mesh/adjacency.h"
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace anistar::generate {
@@ -21,5 +22,21 @@ struct Plc {
   /// Must be unions of edges of the mesh: borders between facets, and what is embedded.
   std::vector<Segment> segments;
 };
+
+/// Which points belong to a facet, to a segment, or are to be kept anyway.
+[[nodiscard]] inline std::vector<bool> used_points(const Plc &plc,
+                                                   std::span<const Index> points_kept) {
+  std::vector<bool> is_used(plc.points.size(), false);
+  const auto use = [&](const auto &simplices) {
+    for (const auto &simplex : simplices)
+      for (const Index v : simplex)
+        is_used[v] = true;
+  };
+  use(plc.triangles);
+  use(plc.segments);
+  for (const Index v : points_kept)
+    is_used[v] = true;
+  return is_used;
+}
 
 } // namespace anistar::generate

@@ -5,8 +5,8 @@
 
 namespace anistar::generate {
 
-/// A point that the generator has placed on a segment or on an edge inside a facet, at
-/// (1 - t) a + t b; a and b may be such points themselves.
+/// A point that the generator has placed on a segment, on an edge inside a facet, or in
+/// the volume, at (1 - t) a + t b; a and b may be such points themselves.
 struct SteinerPoint {
   Index a, b;
   double t;

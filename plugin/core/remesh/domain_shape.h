@@ -11,10 +11,10 @@ namespace anistar {
 /// Turns by less (degrees) are round-off.
 inline constexpr double round_off_turn = 1e-7;
 
-/// The facets are samples of smooth curves and surfaces between sharp turns; or they are
-/// the domain itself, and every turn is sharp; or those of one tag are planar pieces of
-/// it, up to the accuracy of their points, and only given edges and changes of tags
-/// are sharp.
+/// The facets are samples of smooth curves and surfaces between sharp turns; or they
+/// are the domain itself, and every turn is sharp; or those of one tag are planar
+/// pieces of it, up to the accuracy of their points, and only given edges and changes
+/// of tags are sharp.
 enum class ShapeKind { smooth, polyhedron, faceted };
 
 struct DomainShape {

@@ -8,11 +8,15 @@ from typing import Any
 from ...base.errors import FormatError
 from ...formats import read as read_mesh
 from ...formats import read_metric, write
+from ...formats.suffixes import suffix_of
 from ...generating.generate import generate
 from ...generating.report import GenerateReport
 from .. import console
 from ..files import replaced_inputs, writable
 from ..options import add_generate_options, generate_options
+
+#: Formats of surfaces alone.
+OF_SURFACES = (".stl", ".obj", ".off", ".ply")
 
 SUMMARY = "make the first mesh of a geometry: an STL, a surface mesh, a PLC or an outline"
 EXAMPLE = "anistar generate part.stl --size 0.05 -o part.msh"
@@ -44,6 +48,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
     output = writable(arguments.output)
+    if suffix_of(output) in OF_SURFACES:
+        raise FormatError(f"cannot write {output}: {output.suffix} has no place for cells")
     given = _wished(arguments)
     done = generate(arguments.input, **given, **generate_options(arguments))
     inputs = (arguments.input, arguments.background, arguments.metric)

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy  # loads scipy.sparse when it is first used
 
 from ...base.arrays import AnyArray, Floats, Ints
 from ...meshes.mesh import Mesh
@@ -71,5 +70,5 @@ def _parts(cells: Ints, facets: Ints, n_points: int) -> AnyArray:
     is_open[table.find(facets)] = False
     first, second = table.cells[is_open].T
     ones = np.ones(len(first), np.int8)
-    graph = coo_array((ones, (first, second)), shape=(len(cells), len(cells)))
-    return np.asarray(connected_components(graph, directed=False)[1])
+    graph = scipy.sparse.coo_array((ones, (first, second)), shape=(len(cells), len(cells)))
+    return np.asarray(scipy.sparse.csgraph.connected_components(graph, directed=False)[1])

@@ -28,7 +28,8 @@ class Constrained(Pieces):
     """Tetrahedra that conform to a complex, and how they came about.
 
     The tag of a cell is that of a region with a seed, its winding number, or else a number from one
-    on; walls are turned as the facets are.
+    on; walls are turned as the facets are. Some Steiner points are of no cell: they are ends
+    between which others in the volume were placed.
 
     Attributes
     ----------
@@ -107,10 +108,19 @@ def _unscaled(made: dict[str, Any], plc: PLC, scale: float) -> Constrained:
 
 
 def _warnings(counts: dict[str, int]) -> tuple[str, ...]:
-    flat = counts["flat_left"]
-    if flat == 0:
-        return ()
-    return (f"{flat} cells of the constrained mesh are flat: points are too near to a plane",)
+    on_flat_walls = counts["flat_on_flat_walls"]
+    near_planes = counts["flat_left"] - on_flat_walls
+    warnings = []
+    if near_planes:
+        warnings.append(
+            f"{near_planes} cells of the constrained mesh are flat: points are too near to a plane"
+        )
+    if on_flat_walls:
+        warnings.append(
+            f"{on_flat_walls} cells of the constrained mesh are flat, as they are on triangles of "
+            "facets that have no area to speak of"
+        )
+    return tuple(warnings)
 
 
 def _scaled(points: Floats) -> tuple[Floats, float]:

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+import scipy  # loads scipy.spatial when it is first used
 
 from ...base.arrays import Floats, Ints
 from .soup import Soup
@@ -60,11 +58,11 @@ def stitched(soup: Soup, tolerance: float) -> Stitched:
 
 def merged(soup: Soup, tolerance: float) -> Soup:
     """Return the soup with points within a tolerance made one, the first of them."""
-    pairs = cKDTree(soup.points).query_pairs(tolerance, output_type="ndarray")
+    pairs = scipy.spatial.cKDTree(soup.points).query_pairs(tolerance, output_type="ndarray")
     n = len(soup.points)
     ones = np.ones(len(pairs), np.int8)
-    near = coo_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    _, components = connected_components(near)
+    near = scipy.sparse.coo_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    _, components = scipy.sparse.csgraph.connected_components(near)
     _, first, group = np.unique(components, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
     place = np.empty(len(order), np.int32)
@@ -96,7 +94,7 @@ def _with_split_borders(soup: Soup, tolerance: float) -> Soup:
     border = np.unique(np.concatenate([starts, ends]))
     if len(border) == 0:
         return soup
-    tree = cKDTree(soup.points[border])
+    tree = scipy.spatial.cKDTree(soup.points[border])
     split = np.zeros(len(soup.triangles), bool)
     parts: list[tuple[int, int, int]] = []
     sources: list[int] = []
@@ -127,7 +125,7 @@ def _border_sides(triangles: Ints) -> tuple[Ints, Ints]:
 
 
 def _points_between(
-    points: Floats, a: int, b: int, border: Ints, tree: cKDTree, tolerance: float
+    points: Floats, a: int, b: int, border: Ints, tree: scipy.spatial.cKDTree, tolerance: float
 ) -> list[int]:
     """Return the border points that lie on an edge within a tolerance, in their order."""
     along = points[b] - points[a]

@@ -92,9 +92,9 @@ def _lower_across_triangles(
         a, b, apex = points[faced[:, i]], points[faced[:, j]], points[faced[:, k]]
         along = b - a
         share = np.einsum("ni,ni->n", apex - a, along) / np.einsum("ni,ni->n", along, along)
-        height = vector_lengths(apex - a - share[:, None] * along)
+        foot = a + share[:, None] * along
         is_above = (share > 0.0) & (share < 1.0)
-        _lower(widths, faced[is_above], height[is_above])
+        _lower(widths, points, faced[is_above], foot[is_above])
 
 
 def _lower_across_cells(widths: Floats, mesh: Mesh) -> None:
@@ -113,11 +113,16 @@ def _lower_across_cells(widths: Floats, mesh: Mesh) -> None:
     for start, end in ((a, b), (b, c), (c, a)):
         inner = np.cross(end - start, foot - start)
         is_above &= np.einsum("ni,ni->n", inner, normal) > 0.0
-    _lower(widths, mesh.cells[cell[is_above]], np.abs(height[is_above]))
+    _lower(widths, mesh.points, mesh.cells[cell[is_above]], foot[is_above])
 
 
-def _lower(widths: Floats, simplices: Ints, bound: Floats) -> None:
-    np.minimum.at(widths, simplices.ravel(), np.repeat(bound, simplices.shape[1]))
+def _lower(widths: Floats, points: Floats, simplices: Ints, foot: Floats) -> None:
+    """Lower the widths at the corners of simplices that are narrow at the foot of their heights.
+
+    The end of a long facet that is far from the foot is no nearer to what is beyond.
+    """
+    for corners in simplices.T:
+        np.minimum.at(widths, corners, vector_lengths(points[corners] - foot))
 
 
 def _keys(edges: Ints, n_points: int) -> Longs:

@@ -121,5 +121,5 @@ def holds_geometry(path: Path) -> bool:
         if suffix == ".vtk" and legacy_polydata.holds_polydata(path):
             return True
         with reading(path):
-            return not of_meshes.is_mesh(of_meshes.read(path))
+            return of_meshes.is_geometry(of_meshes.read(path))
     return suffix in (*_SURFACES, *_COMPLEXES)

@@ -1,6 +1,7 @@
 #include "generate/constrained/constrained.h"
 #include "base/errors.h"
 #include "bindings/bind.h"
+#include "bindings/generate/checked_rows.h"
 #include "bindings/support/geometry.h"
 #include "bindings/support/interrupt.h"
 
@@ -33,31 +34,20 @@ struct PlcArrays {
   Array2<double> holes;          ///< (h, 3)
 };
 
-template <class Row>
-void require_vertices(std::span<const Row> rows, std::size_t n_points,
-                      const std::string &name) {
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    for (const Index v : rows[k])
-      if (v < 0 || std::cmp_greater_equal(v, n_points))
-        throw std::invalid_argument("vertex " + std::to_string(v) + " of " + name +
-                                    " " + std::to_string(k) + " is not a point");
-}
-
 Plc plc_of(const PlcArrays &arrays) {
   const auto points = points_of<3>(arrays.points);
-  const auto triangles = facets_of<3>(arrays.triangles);
   const auto facets = indices_of(arrays.triangle_facets);
-  const auto segments = pairs_of(arrays.segments);
-  require_vertices(triangles, points.size(), "triangle");
-  require_vertices(segments, points.size(), "segment");
+  auto triangles =
+      checked_rows(facets_of<3>(arrays.triangles), points.size(), "triangle");
+  auto segments = checked_rows(pairs_of(arrays.segments), points.size(), "segment");
   if (facets.size() != triangles.size())
     throw std::invalid_argument("there are " + std::to_string(triangles.size()) +
                                 " triangles, but facets of " +
                                 std::to_string(facets.size()));
   return {{points.begin(), points.end()},
-          {triangles.begin(), triangles.end()},
+          std::move(triangles),
           {facets.begin(), facets.end()},
-          {segments.begin(), segments.end()}};
+          std::move(segments)};
 }
 
 RegionRule rule_of(const std::string &name) {
@@ -106,7 +96,9 @@ std::map<std::string, std::size_t> as_map(const ConstrainedCounts &counts) {
           {"rejections", counts.rejections},
           {"peeled", counts.peeled},
           {"removed", counts.removed},
+          {"steiner_points_in_volumes", counts.steiner_points_in_volumes},
           {"flat_left", counts.flat_left},
+          {"flat_on_flat_walls", counts.flat_on_flat_walls},
           {"moved", counts.moved},
           {"predicates", counts.predicates},
           {"exact_predicates", counts.exact_predicates}};

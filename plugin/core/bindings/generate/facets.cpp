@@ -30,9 +30,9 @@ nb::tuple triangulated(const Array2<double> &points, const Array1<Index> &indice
                         owned(std::move(facets.deviations), {n_facets}));
 }
 
-nb::object planar(const Array2<double> &points, const Array2<Index> &triangles,
-                  const Array1<Index> &tags, double degrees, double distance,
-                  double rounding) {
+auto planar(const Array2<double> &points, const Array2<Index> &triangles,
+            const Array1<Index> &tags, double degrees, double distance,
+            double rounding) {
   const double sine = elementary::sine_cosine(degrees * (std::numbers::pi / 180)).sine;
   std::vector<Index> facets;
   {
@@ -41,7 +41,7 @@ nb::object planar(const Array2<double> &points, const Array2<Index> &triangles,
                            indices_of(tags), {sine, distance, rounding});
   }
   const std::size_t n = facets.size();
-  return nb::cast(owned(std::move(facets), {n}));
+  return owned(std::move(facets), {n});
 }
 
 nb::tuple loops_of(const Array2<double> &points, const Array2<Index> &triangles,
@@ -59,14 +59,14 @@ nb::tuple loops_of(const Array2<double> &points, const Array2<Index> &triangles,
                         owned(std::move(loops.facet_starts), {n_facets + 1}));
 }
 
-nb::object equal_points(const Array2<double> &points) {
+auto equal_points(const Array2<double> &points) {
   std::vector<Index> first;
   {
     nb::gil_scoped_release release;
     first = first_at_place(points_of<3>(points));
   }
   const std::size_t n = first.size();
-  return nb::cast(owned(std::move(first), {n}));
+  return owned(std::move(first), {n});
 }
 
 } // namespace

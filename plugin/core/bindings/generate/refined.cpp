@@ -1,4 +1,5 @@
 #include "bindings/bind.h"
+#include "bindings/generate/checked_rows.h"
 #include "bindings/support/geometry.h"
 #include "bindings/support/interrupt.h"
 #include "generate/refinement/refinement.h"
@@ -26,17 +27,6 @@ struct TetrahedraArrays {
   Array2<Index> edges;         ///< (e, 2)
   Array1<Index> edge_segments; ///< (e,)
 };
-
-template <class Row>
-std::vector<Row> checked_rows(std::span<const Row> rows, std::size_t n_points,
-                              const std::string &name) {
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    for (const Index v : rows[k])
-      if (v < 0 || std::cmp_greater_equal(v, n_points))
-        throw std::invalid_argument("vertex " + std::to_string(v) + " of " + name +
-                                    " " + std::to_string(k) + " is not a point");
-  return {rows.begin(), rows.end()};
-}
 
 std::vector<Index> checked_numbers(std::span<const Index> numbers, std::size_t n_rows,
                                    const std::string &name) {

@@ -26,19 +26,6 @@ std::vector<Index> first_in_place(std::span<const Vector<3>> points) {
   return first;
 }
 
-std::vector<bool> used_points(const Plc &plc, std::span<const Index> points_kept) {
-  std::vector<bool> is_used(plc.points.size(), false);
-  for (const Facet<3> &triangle : plc.triangles)
-    for (const Index v : triangle)
-      is_used[v] = true;
-  for (const Segment &segment : plc.segments)
-    for (const Index v : segment)
-      is_used[v] = true;
-  for (const Index v : points_kept)
-    is_used[v] = true;
-  return is_used;
-}
-
 Segment sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// The edges of triangles, sorted.

@@ -16,15 +16,7 @@ namespace {
 
 /// The points that must be vertices of the mesh.
 std::vector<Index> points_in_use(const Plc &plc, const std::vector<Index> &kept) {
-  std::vector<bool> is_used(plc.points.size(), false);
-  for (const Facet<3> &triangle : plc.triangles)
-    for (const Index v : triangle)
-      is_used[v] = true;
-  for (const Segment &segment : plc.segments)
-    for (const Index v : segment)
-      is_used[v] = true;
-  for (const Index v : kept)
-    is_used[v] = true;
+  const std::vector<bool> is_used = used_points(plc, kept);
   std::vector<Index> used;
   for (std::size_t v = 0; v < is_used.size(); ++v)
     if (is_used[v])
@@ -94,7 +86,9 @@ Constrained constrained_tetrahedralisation(const Plc &plc,
   counts.peeled = flat.peeled;
   counts.removed = flat.swapped;
   counts.moved = flat.moved;
+  counts.steiner_points_in_volumes = flat.inserted;
   counts.flat_left = flat.left;
+  counts.flat_on_flat_walls = flat.on_flat_walls;
   counts.predicates = points.counts().asked;
   counts.exact_predicates = points.counts().exact;
   return {output(points, mesh, facets, regions), counts};

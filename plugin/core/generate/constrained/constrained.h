@@ -24,9 +24,11 @@ struct ConstrainedCounts {
   std::size_t rigid_facets =
       0; ///< that kept their triangles, as flips did not end there
   std::size_t missing_facets = 0, cavities = 0, largest_cavity = 0, rejections = 0;
-  std::size_t peeled = 0;    ///< flat cells given to the outside
-  std::size_t removed = 0;   ///< edges taken out of flat cells
-  std::size_t flat_left = 0; ///< cells that are flat still
+  std::size_t peeled = 0;                    ///< flat cells given to the outside
+  std::size_t removed = 0;                   ///< edges taken out of flat cells
+  std::size_t steiner_points_in_volumes = 0; ///< with cells in place of flat ones
+  std::size_t flat_left = 0;                 ///< cells that are flat still
+  std::size_t flat_on_flat_walls = 0;        ///< of these, as triangles of facets are
   std::size_t moved = 0; ///< Steiner points moved along their edge, against flat cells
   std::size_t predicates = 0, exact_predicates = 0;
 };

@@ -46,10 +46,19 @@ def read(path: Path) -> RawMesh:
 
 def is_mesh(raw: RawMesh) -> bool:
     """Return whether elements fill a domain: there are some in space, or some at one height."""
-    dims = {KINDS[block.kind].dim for block in raw.blocks if _is_known(block) and len(block.rows)}
+    dims = _dimensions(raw)
     if max(dims, default=0) == 2:
         return raw.points.shape[1] == 2 or _height(raw, 2) is not None
     return 3 in dims
+
+
+def is_geometry(raw: RawMesh) -> bool:
+    """Return whether there are elements, and they bound a domain that they do not fill."""
+    return max(_dimensions(raw), default=0) > 0 and not is_mesh(raw)
+
+
+def _dimensions(raw: RawMesh) -> set[int]:
+    return {KINDS[block.kind].dim for block in raw.blocks if _is_known(block) and len(block.rows)}
 
 
 def surface_of(raw: RawMesh) -> RawSurface:

@@ -55,6 +55,11 @@ public:
   [[nodiscard]] bool is_flat(Index edge) const {
     return is_required(edge) && lines_[edges_[edge].line].is_flat();
   }
+  /// Whether there is an edge between two points which is part of a segment.
+  [[nodiscard]] bool is_segment(Index a, Index b) const {
+    const Index edge = find(a, b);
+    return edge != none && is_required(edge) && !is_flat(edge);
+  }
   [[nodiscard]] std::vector<TriangleSide> sides(Index edge) const;
   /// The triangles of each plane.
   [[nodiscard]] std::vector<std::vector<Index>> triangles_by_plane() const;

@@ -14,11 +14,10 @@ namespace {
 constexpr double flat = 1e-9;
 /// What is on two triangles of a nearly planar facet is flatter than that.
 constexpr double flat_on_facet = 1e-2;
-/// A swap is worth it if the worst cell becomes better by so much, and above the least.
-constexpr double least_gain = 10, least_swapped = 1e-8;
 /// A swap that makes no cell flatter than that may be made for the sake of another.
 constexpr double harmless = 1e-4;
 constexpr int most_passes = 4;
+constexpr int most_failures = 1000; ///< of points in the volume
 
 } // namespace
 
@@ -26,7 +25,7 @@ FlatCells::FlatCells(ExactPoints &points, GhostMesh &mesh, const FacetTriangles 
                      PerCell<Index> &regions)
     : points_(points), mesh_(mesh), facets_(facets), regions_(regions),
       facet_of_plane_(facets.facets_of_planes()), swaps_(points, mesh, regions),
-      moves_(points, mesh, regions) {}
+      moves_(points, mesh, regions), volume_points_(points, mesh, facets, regions) {}
 
 bool FlatCells::is_inside(Index c) const {
   return mesh_.is_alive(c) && regions_[c] != outside;
@@ -50,7 +49,11 @@ FlatCells::Counts FlatCells::remove(bool may_peel, Monitor &monitor) {
     if (!is_new)
       break;
   }
-  counts_.left = flat_cells(flat).size();
+  insert_points(monitor); // after the moves, which would have to move these along
+  for (const Index c : flat_cells(flat)) {
+    ++counts_.left;
+    counts_.on_flat_walls += has_flat_wall(c);
+  }
   return counts_;
 }
 
@@ -60,11 +63,6 @@ std::vector<Index> FlatCells::flat_cells(double bound) const {
     if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < bound)
       found.push_back(c);
   return found;
-}
-
-bool FlatCells::is_segment(Index a, Index b) const {
-  const Index edge = facets_.find(a, b);
-  return edge != none && facets_.is_required(edge) && !facets_.is_flat(edge);
 }
 
 bool FlatCells::is_on_wall(Index a, Index b) const {
@@ -89,8 +87,9 @@ std::optional<FlatCells::Peel> FlatCells::peel_of(Index c) const {
   const Cell<3> &cell = mesh_.cell(c);
   if (facet_of_plane_[mesh_.wall(one)] != facet_of_plane_[mesh_.wall(other)] ||
       regions_[mesh_.opposite(one).cell()] != regions_[mesh_.opposite(other).cell()] ||
-      is_segment(cell[peel.k], cell[peel.l]) ||
-      is_segment(cell[peel.i], cell[peel.j]) || is_on_wall(cell[peel.i], cell[peel.j]))
+      facets_.is_segment(cell[peel.k], cell[peel.l]) ||
+      facets_.is_segment(cell[peel.i], cell[peel.j]) ||
+      is_on_wall(cell[peel.i], cell[peel.j]))
     return std::nullopt;
   return peel;
 }
@@ -146,7 +145,7 @@ std::vector<Swap> FlatCells::swaps_at(Index c) {
   for (std::size_t i = 0; i < 4; ++i) {
     note(swaps_.without_facet({c, i}));
     for (std::size_t j = i + 1; j < 4; ++j)
-      if (!is_segment(cell[i], cell[j]))
+      if (!facets_.is_segment(cell[i], cell[j]))
         note(swaps_.without_edge(cell[i], cell[j]));
   }
   return found;
@@ -170,34 +169,43 @@ bool FlatCells::move(Index c) {
   return is_better;
 }
 
-/// The edges of the cells round the edges of a flat cell.
-std::vector<Segment> FlatCells::edges_about(Index c) const {
-  std::vector<Segment> found;
-  std::vector<HalfFacet> ring;
-  const Cell<3> &cell = mesh_.cell(c);
-  const auto note = [&](const Cell<3> &beside) {
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j)
-        found.push_back(
-            {std::min(beside[i], beside[j]), std::max(beside[i], beside[j])});
-  };
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = i + 1; j < 4; ++j) {
-      mesh_.ring({cell[i], cell[j], c}, ring);
-      for (const HalfFacet leave : ring)
-        if (is_inside(leave.cell()))
-          note(mesh_.cell(leave.cell()));
-    }
-  std::ranges::sort(found);
-  const auto rest = std::ranges::unique(found);
-  found.erase(rest.begin(), rest.end());
-  return found;
+/// Gives up after many cells that no point helps, as each takes a thousand trials.
+void FlatCells::insert_points(Monitor &monitor) {
+  int failures = 0;
+  for (const Index c : flat_cells(flat)) {
+    monitor.insist(points_.size());
+    if (is_inside(c) && shape_of(points_, mesh_.cell(c)) < flat && !has_flat_wall(c) &&
+        !insert_point(c) && ++failures == most_failures)
+      return;
+  }
+}
+
+/// Makes a star of cells at a new point, which takes the place of cells about a flat
+/// one.
+bool FlatCells::insert_point(Index c) {
+  const auto star = volume_points_.star_in_place_of(c);
+  if (!star)
+    return false;
+  make(*star);
+  ++counts_.inserted;
+  return true;
+}
+
+/// Whether a wall of a cell has no area to speak of: then no other cells are better.
+bool FlatCells::has_flat_wall(Index c) const {
+  for (std::size_t i = 0; i < 4; ++i) {
+    const HalfFacet h(c, i);
+    const auto [u, v, w] = mesh_.facet(h);
+    if (mesh_.wall(h) != none && shape_of(points_, u, v, w) < flat)
+      return true;
+  }
+  return false;
 }
 
 /// Makes room by a harmless swap beside a cell that cannot be swapped as things are.
 bool FlatCells::swap_after_another(Index c) {
-  for (const auto &[a, b] : edges_about(c)) {
-    if (is_segment(a, b))
+  for (const auto &[a, b] : swaps_.edges_about(c)) {
+    if (facets_.is_segment(a, b))
       continue;
     const auto first = swaps_.without_edge(a, b);
     if (!first || first->least_after < harmless ||
@@ -212,11 +220,6 @@ bool FlatCells::swap_after_another(Index c) {
     make(back);
   }
   return false;
-}
-
-bool FlatCells::is_worth(const Swap &swap) const {
-  return swap.least_after > least_swapped &&
-         swap.least_after > least_gain * swap.least_before;
 }
 
 std::vector<Index> FlatCells::make(const Swap &swap) {

@@ -6,6 +6,7 @@
 #include "generate/constrained/facets/facet_triangles.h"
 #include "generate/constrained/flat/steiner_moves.h"
 #include "generate/constrained/flat/swaps.h"
+#include "generate/constrained/flat/volume_points.h"
 
 #include <vector>
 
@@ -13,11 +14,13 @@ namespace anistar::generate {
 
 /// Four points on one circle make a flat cell of a Delaunay mesh, and points of a
 /// nearly planar facet make flat cells on it. The former are swapped away; the latter
-/// are peeled off: the facet passes to their other side.
+/// are peeled off: the facet passes to their other side. Where neither helps, a point
+/// in the volume does.
 class FlatCells {
 public:
   struct Counts {
-    std::size_t peeled = 0, swapped = 0, moved = 0, left = 0;
+    std::size_t peeled = 0, swapped = 0, moved = 0, inserted = 0;
+    std::size_t left = 0, on_flat_walls = 0; ///< cells that are flat still
   };
 
   FlatCells(ExactPoints &points, GhostMesh &mesh, const FacetTriangles &facets,
@@ -34,11 +37,11 @@ private:
   std::vector<Index> facet_of_plane_;
   Swaps swaps_;
   SteinerMoves moves_;
+  VolumePoints volume_points_;
   Counts counts_;
 
   [[nodiscard]] bool is_inside(Index c) const;
   [[nodiscard]] std::vector<Index> flat_cells(double bound) const;
-  [[nodiscard]] bool is_segment(Index a, Index b) const;
   [[nodiscard]] bool is_on_wall(Index a, Index b) const;
 
   /// A flat cell with two walls of one facet, at places i and j; k and l are the
@@ -54,9 +57,10 @@ private:
   bool swap(Index c);
   bool swap_after_another(Index c);
   bool move(Index c);
-  [[nodiscard]] std::vector<Segment> edges_about(Index c) const;
+  void insert_points(Monitor &monitor);
+  bool insert_point(Index c);
+  [[nodiscard]] bool has_flat_wall(Index c) const;
   [[nodiscard]] std::vector<Swap> swaps_at(Index c);
-  [[nodiscard]] bool is_worth(const Swap &swap) const;
   std::vector<Index> make(const Swap &swap);
 };
 

@@ -9,6 +9,9 @@
 namespace anistar::generate {
 namespace {
 
+/// What a swap must gain at least, as a factor, and reach.
+constexpr double least_gain = 10, least_swapped = 1e-8;
+
 /// A polygon round an edge, counter-clockwise seen from its top, and how it is cut.
 class Fan {
 public:
@@ -73,6 +76,25 @@ private:
 
 } // namespace
 
+bool is_worth(const Swap &swap) {
+  return swap.least_after > least_swapped &&
+         swap.least_after > least_gain * swap.least_before;
+}
+
+std::optional<Swap> checked(const ExactPoints &points, const GhostMesh &mesh,
+                            std::vector<Index> old, std::vector<Cell<3>> cells) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Swap swap{std::move(old), std::move(cells), infinity, infinity};
+  for (const Index c : swap.old)
+    swap.least_before = std::min(swap.least_before, shape_of(points, mesh.cell(c)));
+  for (const Cell<3> &cell : swap.cells) {
+    swap.least_after = std::min(swap.least_after, shape_of(points, cell));
+    if (points.orientation(cell[0], cell[1], cell[2], cell[3]) != Orientation::positive)
+      return std::nullopt;
+  }
+  return swap;
+}
+
 std::optional<Swap> Swaps::without_edge(Index a, Index b) {
   const auto place = mesh_.find_edge(a, b);
   if (!place)
@@ -80,18 +102,17 @@ std::optional<Swap> Swaps::without_edge(Index a, Index b) {
   mesh_.ring(*place, ring_);
   if (ring_.size() < 3 || ring_.size() > most_round_edge || !is_free(ring_, a, b))
     return std::nullopt;
-  Swap swap;
-  std::vector<Index> corners;
+  std::vector<Index> old, corners;
   for (const HalfFacet leave : ring_) {
-    swap.old.push_back(leave.cell());
+    old.push_back(leave.cell());
     corners.push_back(mesh_.apex(leave));
   }
   if (points_.orientation(a, b, corners[0], corners[1]) == Orientation::negative)
     std::swap(a, b);
-  swap.cells = Fan(points_, corners, a, b).best_cells();
-  if (swap.cells.size() != 2 * (corners.size() - 2))
+  auto cells = Fan(points_, corners, a, b).best_cells();
+  if (cells.size() != 2 * (corners.size() - 2))
     return std::nullopt;
-  return checked(std::move(swap));
+  return checked(points_, mesh_, std::move(old), std::move(cells));
 }
 
 /// Whether the edge is inside of one region and on no wall.
@@ -114,25 +135,32 @@ std::optional<Swap> Swaps::without_facet(HalfFacet h) const {
     return std::nullopt;
   const auto [a, b, c] = mesh_.facet(h);
   const Index above = mesh_.apex(h), below = mesh_.apex(other);
-  Swap swap;
-  swap.old = {h.cell(), other.cell()};
+  std::vector<Cell<3>> cells;
   for (const auto &[u, v] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
-    swap.cells.push_back({below, u, v, above});
-  return checked(std::move(swap));
+    cells.push_back({below, u, v, above});
+  return checked(points_, mesh_, {h.cell(), other.cell()}, std::move(cells));
 }
 
-std::optional<Swap> Swaps::checked(Swap swap) const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  swap.least_before = swap.least_after = infinity;
-  for (const Index c : swap.old)
-    swap.least_before = std::min(swap.least_before, shape_of(points_, mesh_.cell(c)));
-  for (const Cell<3> &cell : swap.cells) {
-    swap.least_after = std::min(swap.least_after, shape_of(points_, cell));
-    if (points_.orientation(cell[0], cell[1], cell[2], cell[3]) !=
-        Orientation::positive)
-      return std::nullopt;
-  }
-  return swap;
+std::vector<Segment> Swaps::edges_about(Index c) {
+  std::vector<Segment> found;
+  const Cell<3> &cell = mesh_.cell(c);
+  const auto note = [&](const Cell<3> &beside) {
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j)
+        found.push_back(
+            {std::min(beside[i], beside[j]), std::max(beside[i], beside[j])});
+  };
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      mesh_.ring({cell[i], cell[j], c}, ring_);
+      for (const HalfFacet leave : ring_)
+        if (regions_[leave.cell()] != outside)
+          note(mesh_.cell(leave.cell()));
+    }
+  std::ranges::sort(found);
+  const auto rest = std::ranges::unique(found);
+  found.erase(rest.begin(), rest.end());
+  return found;
 }
 
 } // namespace anistar::generate

@@ -16,6 +16,14 @@ struct Swap {
   double least_before = 0, least_after = 0; ///< of their shapes
 };
 
+/// Whether the worst cell becomes better by far, and good enough.
+[[nodiscard]] bool is_worth(const Swap &swap);
+
+/// The exchange of cells for others, with their shapes, if all of those are positive.
+[[nodiscard]] std::optional<Swap> checked(const ExactPoints &points,
+                                          const GhostMesh &mesh, std::vector<Index> old,
+                                          std::vector<Cell<3>> cells);
+
 /// Tells which swaps there are about the cells of one region; all new cells are
 /// positive.
 class Swaps {
@@ -30,6 +38,8 @@ public:
   [[nodiscard]] std::optional<Swap> without_edge(Index a, Index b);
   /// Joins the apexes on both sides of a facet that is no wall.
   [[nodiscard]] std::optional<Swap> without_facet(HalfFacet h) const;
+  /// The edges of the cells round the edges of a cell.
+  [[nodiscard]] std::vector<Segment> edges_about(Index c);
 
 private:
   /// More cells round an edge are hardly ever worth the search.
@@ -42,7 +52,6 @@ private:
 
   [[nodiscard]] bool is_free(const std::vector<HalfFacet> &ring, Index a,
                              Index b) const;
-  [[nodiscard]] std::optional<Swap> checked(Swap swap) const;
 };
 
 } // namespace anistar::generate

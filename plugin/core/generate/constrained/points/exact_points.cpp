@@ -90,6 +90,14 @@ Index ExactPoints::add(const SteinerPoint &point) {
   return size() - 1;
 }
 
+void ExactPoints::remove_last() {
+  rounded_.pop_back();
+  error_.pop_back();
+  planes_.pop_back();
+  steiner_.pop_back();
+  exact_.pop_back();
+}
+
 void ExactPoints::move(Index v, double t) {
   steiner_[v - n_given_].t = t;
   place(v);

@@ -1,5 +1,6 @@
 #pragma once
-// The points of a complex, those placed on its edges, and exact predicates on both.
+// The points of a complex, those placed on lines between them, and exact predicates on
+// both.
 //
 // A Steiner point (1 - t) a + t b is kept as it is defined, so that it lies on its edge
 // and in every facet at that edge exactly; its rounded coordinates serve the filters.
@@ -28,6 +29,8 @@ public:
   /// Places a point, which lies on all planes that its ends share.
   /// @pre 0 < t < 1
   Index add(const SteinerPoint &point);
+  /// Takes the last Steiner point away. @pre nothing depends on it
+  void remove_last();
   /// Moves a Steiner point along its edge, and none that depends on it.
   void move(Index v, double t);
   /// Tells that v lies exactly on a plane, a number that the caller gives.
