@@ -96,7 +96,9 @@ def test_a_view_turns_in_a_browser_without_an_error(page, tmp_path):
     done = subprocess.run(
         [*words, page.as_uri()], capture_output=True, text=True, timeout=120, check=True
     )
-    assert "CONSOLE" not in done.stderr
+    # a busy machine has the driver say that reading pixels waited
+    told = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+    assert [line for line in told if "OpenGL, Performance" not in line] == []
     title = done.stdout.partition("<title>")[2].partition("</title>")[0]
     before, after = json.loads(title)
     assert 0.1 < before["share"] < 0.9
