@@ -84,6 +84,7 @@ def _show(arguments: argparse.Namespace, report: GenerateReport) -> None:
         ("points added for the facets", report.constrained.get("steiner_points")),
         ("largest error of a facet's area", report.measures.facet_error),
         ("largest error of a region's volume", report.measures.region_error),
+        ("volume between given and new facets", report.measures.volume_between),
     ]
     title = f"generated in {sum(report.seconds.values()):.2f} s"
     console.show_table(title, ("", arguments.output), rows)

@@ -28,9 +28,9 @@ from ...metric.pipeline.finishing import finishing_on
 from ...metric.pipeline.options import TARGETS
 from .. import console
 from ..files import replaced_inputs, writable
+from ..metric_flags.goals import add_goal_arguments, goal_metrics, has_goals
+from ..metric_flags.sources import add_source_arguments, has_sources, sources
 from ..options import adapt_options, add_metric_options, numbers
-from .metric_goals import add_goal_arguments, goal_metrics, has_goals
-from .metric_sources import add_source_arguments, has_sources, sources
 
 SUMMARY = "make a metric of fields, sizes or other metrics and write it, without remeshing"
 EXAMPLE = "anistar metric in.vtu --field u --target-complexity 10000 -o metric.sol"
