@@ -17,7 +17,7 @@ from ..base.telling import tell
 from ..judging.certificate import keep_certificate
 from ..meshes.fields import Field
 from ..meshes.mesh import Mesh
-from ..meshes.mesh_arrays import mesh_arrays
+from ..meshes.mesh_arrays import mesh_arrays, unit_scale
 from ..meshes.plotted import Plotted, Subject
 from ..metric import check_metric
 from ..metric.base.told import Told
@@ -140,7 +140,7 @@ def _remeshed(
     _check_call(mesh, geometry, project, options)
     options = options.on(geometry)
     metric = check_metric(M, n_points=mesh.n_points, dim=mesh.dim)
-    scale = _unit_scale(mesh.points)
+    scale = unit_scale(mesh.points)
     with np.errstate(over="ignore", under="ignore"):
         metric /= scale * scale  # a copy, as check_metric returns it
     check_sizes(mesh, metric, scale)
@@ -207,16 +207,6 @@ def _new_mesh(made: _core.MeshArrays, mesh: Mesh, geometry: Mesh, scale: float) 
         names={**mesh.names, **geometry.names},
         z=mesh.z,
     )
-
-
-def _unit_scale(points: Floats) -> float:
-    """Return the power of two that brings the extent of the points to about one.
-
-    The core then computes with the same numbers whatever the unit of length, as long as units
-    differ by powers of two.
-    """
-    extent = float(np.ptp(points, axis=0).max())
-    return float(np.ldexp(1.0, -int(np.frexp(extent)[1])))
 
 
 def _made(

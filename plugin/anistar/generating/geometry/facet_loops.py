@@ -10,7 +10,7 @@ import numpy as np
 
 from ... import _core
 from ...base.arrays import AnyArray, Floats, Ints
-from ...meshes.mesh import as_int32
+from ...meshes.conversion import as_int32
 
 Loop = tuple[int, ...]
 Loops = tuple[Loop, ...]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base.arrays import Floats, Ints
+from ...meshes.conversion import as_rows, as_tags
 from ...meshes.svg import drawing_of
 from ...metric.base.told import Told
 from ...objects import AnyMesh, as_mesh
@@ -25,8 +26,6 @@ from .plc_arrays import (
     as_points,
     as_points_kept,
     as_regions,
-    as_rows,
-    as_tags,
     require_different,
     require_in_range,
 )

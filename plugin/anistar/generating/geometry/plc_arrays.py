@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base.arrays import AnyArray, Floats, Ints
-from ...meshes.mesh import as_int32
+from ...meshes.conversion import as_int32, as_rows
 from .region import Region
 
 Names = dict[tuple[int, int], str]
@@ -33,24 +33,6 @@ def as_edges(given: ArrayLike | None) -> Ints:
         at = int(np.argmax(is_loop))
         raise ValueError(f"edges[{at}] joins point {edges[at, 0]} to itself")
     return edges
-
-
-def as_rows(given: ArrayLike | None, name: str, width: int) -> Ints:
-    """Return rows (k, width) of point indices as a new array."""
-    rows = np.zeros((0, width), np.int32) if given is None else as_int32(given, name)
-    if rows.size == 0:
-        rows = rows.reshape(0, width)
-    if rows.ndim != 2 or rows.shape[1] != width:
-        raise ValueError(f"{name} must have shape (k, {width}), not {rows.shape}")
-    return rows
-
-
-def as_tags(given: ArrayLike | None, name: str, length: int) -> Ints:
-    """Return tags as a new array, 0 if none are given."""
-    tags = np.zeros(length, np.int32) if given is None else as_int32(given, name)
-    if tags.shape != (length,):
-        raise ValueError(f"{name} must have shape ({length},), not {tags.shape}")
-    return tags
 
 
 def as_points_kept(given: ArrayLike | None) -> Ints:

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from ... import _core
 from ...base.arrays import Floats, Ints
 from ...base.core_errors import meshing_errors
-from ...meshes.topology import cell_volumes, edge_lengths
+from ...meshes.mesh_arrays import unit_scale
+from ...meshes.topology import cell_volumes, edge_lengths, vector_lengths
 from ..geometry.plc import PLC
 from ..pieces import Pieces
 
@@ -130,7 +131,7 @@ def constrained_plane(
     .. [1] Chew, Constrained Delaunay triangulations, 1989.
     """
     budget = budget or PlaneBudget()
-    scale = _unit_scale(plc.points)
+    scale = unit_scale(plc.points)
     seeds = np.array([region.seed for region in plc.regions]).reshape(-1, 2)
     with meshing_errors(scale):
         made = _core.constrained_triangles(
@@ -230,8 +231,8 @@ def plane_sizes(
 def _refined(
     plc: PLC, made: PlanePieces, sizes: Floats, bound: float, budget: PlaneBudget
 ) -> PlanePieces:
-    scale = _unit_scale(plc.points)
-    extent = _diameter(plc.points)
+    scale = unit_scale(plc.points)
+    extent = float(vector_lengths(np.ptp(plc.points, axis=0)))
     wished = {region.tag: region.size for region in plc.regions if region.size is not None}
     tags = np.array(sorted(wished), np.int32)
     in_regions = np.array([wished[int(tag)] for tag in tags])
@@ -301,14 +302,3 @@ def _turns(plc: PLC) -> Ints:
     turns = np.zeros(len(segments), np.int32)
     np.add.at(turns, row, np.where(plc.edges[:, 0] == low, 1, -1).astype(np.int32))
     return turns
-
-
-def _diameter(points: Floats) -> float:
-    extent = np.ptp(points, axis=0)
-    return float(np.sqrt((extent * extent).sum()))
-
-
-def _unit_scale(points: Floats) -> float:
-    """Return the power of two that brings the extent of points to about one."""
-    extent = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
-    return float(np.ldexp(1.0, -int(np.frexp(extent)[1]))) if extent > 0.0 else 1.0
