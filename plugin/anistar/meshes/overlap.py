@@ -45,9 +45,11 @@ def touching_point(points: Floats, facets: Ints) -> tuple[int, int] | None:
     for first, second in _close_pairs(points, facets):
         for column in range(facets.shape[1]):
             vertex = facets[second, column]
-            hit = _lies_on(points, facets[first], vertex)
+            # neighbours, most of all pairs, share points
+            other = np.flatnonzero((facets[first] != vertex[:, None]).all(axis=1))
+            hit = _lies_on(points, facets[first[other]], vertex[other])
             if hit.any():
-                at = int(np.argmax(hit))
+                at = other[int(np.argmax(hit))]
                 return int(vertex[at]), int(first[at])
     return None
 
@@ -124,7 +126,7 @@ def _close_pairs(points: Floats, facets: Ints) -> Iterator[tuple[Longs, Longs]]:
 
 
 def _lies_on(points: Floats, facets: Ints, vertices: Ints) -> Bools:
-    """Tell for each row whether the vertex lies on the facet without being a corner of it."""
+    """Tell for each row whether the vertex, no corner of the facet, lies on it."""
     corners = points[facets]
     legs = corners[:, 1:] - corners[:, :1]
     offset = points[vertices] - corners[:, 0]
@@ -147,9 +149,8 @@ def _lies_on(points: Floats, facets: Ints, vertices: Ints) -> Bools:
     distance = vector_lengths(offset - np.einsum("ki,kij->kj", weights, legs))
     size = np.abs(legs).max(axis=(1, 2))
     inside = (weights >= -CONTACT).all(axis=1) & (weights.sum(axis=1) <= 1 + CONTACT)
-    own = (facets == vertices[:, None]).any(axis=1)
     rounding = 8 * np.finfo(float).eps * np.abs(corners).max(axis=(1, 2))
-    return np.asarray(inside & ~own & (distance <= CONTACT * size + rounding))
+    return np.asarray(inside & (distance <= CONTACT * size + rounding))
 
 
 def _cross(points: Floats, first: Ints, second: Ints) -> Bools:
