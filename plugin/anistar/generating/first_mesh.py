@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Bools, Floats, Ints
+from ..base.errors import MeshingError
 from ..meshes.mesh import Mesh
 from ..meshes.topology import vector_lengths
 from ..metric import exp_metric, log_metric
@@ -44,7 +45,7 @@ class FirstMesh:
 
         Raises
         ------
-        ValueError
+        MeshingError
             If it is no valid mesh; names the culprit.
         """
         origin = np.unique(pieces.cells).astype(np.int32)
@@ -55,13 +56,18 @@ class FirstMesh:
             arrays["edges"], arrays["edge_tags"] = _used(pieces.edges, pieces.edge_segments, row)
         arrays["facets"], arrays["facet_tags"] = _used(pieces.walls, pieces.wall_facets, row)
         corners = row[_corners(plc)]
-        mesh = Mesh(
-            points=pieces.points[origin],
-            cells=row[pieces.cells],
-            cell_tags=pieces.cell_tags,
-            corners=corners[corners >= 0],
-            **arrays,
-        )
+        try:
+            mesh = Mesh(
+                points=pieces.points[origin],
+                cells=row[pieces.cells],
+                cell_tags=pieces.cell_tags,
+                corners=corners[corners >= 0],
+                **arrays,
+            )
+        except ValueError as error:
+            raise MeshingError(
+                f"facets of the geometry are nearer to each other than doubles can tell: {error}"
+            ) from error
         return cls(plc, mesh, origin, pieces)
 
     def tagged(self, mesh: Mesh | None = None) -> Mesh:

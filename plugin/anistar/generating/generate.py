@@ -84,8 +84,19 @@ def generate(
     .. [3] Li, Sliver-free three dimensional Delaunay mesh generation, 2000.
     """
     options = chosen(GenerateOptions, options, settings)
+    _check_call(size, metric, options)
     done = _generated(geometry, size, metric, options)
     return done if like is None else done.to(like)
+
+
+def _check_call(size: Sizes | None, metric: Sizes | None, options: GenerateOptions) -> None:
+    if size is not None and metric is not None:
+        raise ValueError("give a size or a metric, not both: intersect them where both hold")
+    is_asked = size is not None or metric is not None or bool(options.size_at)
+    if options.method == "constrained" and is_asked:
+        raise ValueError('method="constrained" adds no points for a size or a metric')
+    if options.method == "refine" and metric is not None:
+        raise ValueError('method="refine" makes isotropic meshes: give the metric to "remesh"')
 
 
 def _generated(
@@ -147,11 +158,7 @@ def _finished(
 ) -> Stage:
     """Return what the method makes of the constrained mesh."""
     if options.method == "constrained":
-        if size is not None or metric is not None or options.size_at:
-            raise ValueError('method="constrained" adds no points for a size or a metric')
         return Stage(mesh=first.tagged(), numbered=first.mesh)
-    if options.method == "refine" and metric is not None:
-        raise ValueError('method="refine" makes isotropic meshes: give the metric to "remesh"')
     wanted = wanted_of(first, size, metric, options)
     make = refined if options.method == "refine" else remeshed
     return replace(make(first, wanted.wish, options, clock), warnings=wanted.warnings)

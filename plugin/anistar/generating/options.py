@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
@@ -10,14 +10,12 @@ import numpy as np
 
 from ..metric.base.by_name import by_name, require_numbers
 from ..metric.base.names import Tag
-from ..remeshing.options import RemeshOptions
+from ..remeshing.options import Callback, RemeshOptions
 
 Method = Literal["remesh", "refine", "constrained"]
 Shape = Literal["polyhedron", "smooth"]
 Inside = Literal["regions", "winding", "nonzero"]
 Repair = Literal["none", "orient", "stitch", "resolve"]
-
-Callback = Callable[[str, float], object]
 
 
 @by_name

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from ..base.arrays import AnyArray, Bools, Floats, Ints
 from ..metric.base.names import Tag, tags_called
 from ..metric.base.told import Told
+from .conversion import as_int32, as_rows, as_tags
 from .plotted import Plotted, Subject
 from .svg import drawing_of
 from .topology import FacetTable, facet_table
@@ -248,54 +249,23 @@ def _as_cells(given: ArrayLike, dim: int) -> Ints:
     return as_int32(cells, "cells")
 
 
-def as_int32(given: ArrayLike, name: str) -> Ints:
-    """Return a new int32 array; raise and name the entry that would lose information."""
-    array = np.asarray(given)
-    if array.dtype.kind not in "biuf":
-        raise TypeError(f"{name} must be integers, not {array.dtype}")
-    with np.errstate(invalid="ignore"):
-        result = np.array(array, dtype=np.int32, order="C")
-    changed = result != array
-    if changed.any():
-        at = np.unravel_index(int(np.argmax(changed)), array.shape)
-        where = ", ".join(str(int(i)) for i in at)
-        raise TypeError(f"{name}[{where}] = {array[at]} is not a 32-bit integer")
-    return result
-
-
 def _constraints(mesh: Mesh, dim: int, n_cells: int) -> dict[str, Ints]:
     """Return tags, facets, edges and corners with defaults filled in and shapes checked."""
-    facets = _rows(mesh.facets, "facets", dim)
-    edges = _rows(mesh.edges, "edges", 2)
+    facets = as_rows(mesh.facets, "facets", dim)
+    edges = as_rows(mesh.edges, "edges", 2)
     if dim == 2 and len(edges):
         raise ValueError("edges are the ridges of a 3D mesh; in 2D give facets")
     corners = as_int32([] if mesh.corners is None else mesh.corners, "corners")
     if corners.ndim != 1:
         raise ValueError(f"corners must have shape (c,), not {corners.shape}")
     return {
-        "cell_tags": _tags(mesh.cell_tags, "cell_tags", n_cells),
+        "cell_tags": as_tags(mesh.cell_tags, "cell_tags", n_cells),
         "facets": facets,
-        "facet_tags": _tags(mesh.facet_tags, "facet_tags", len(facets)),
+        "facet_tags": as_tags(mesh.facet_tags, "facet_tags", len(facets)),
         "edges": edges,
-        "edge_tags": _tags(mesh.edge_tags, "edge_tags", len(edges)),
+        "edge_tags": as_tags(mesh.edge_tags, "edge_tags", len(edges)),
         "corners": corners,
     }
-
-
-def _rows(given: ArrayLike | None, name: str, width: int) -> Ints:
-    rows = np.zeros((0, width), np.int32) if given is None else as_int32(given, name)
-    if rows.size == 0:
-        rows = rows.reshape(0, width)
-    if rows.ndim != 2 or rows.shape[1] != width:
-        raise ValueError(f"{name} must have shape (k, {width}), not {rows.shape}")
-    return rows
-
-
-def _tags(given: ArrayLike | None, name: str, length: int) -> Ints:
-    tags = np.zeros(length, np.int32) if given is None else as_int32(given, name)
-    if tags.shape != (length,):
-        raise ValueError(f"{name} must have shape ({length},), not {tags.shape}")
-    return tags
 
 
 def _complete_facets(arrays: dict[str, Any], table: FacetTable) -> None:

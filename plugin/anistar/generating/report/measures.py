@@ -7,11 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Ints
+from ...base.arrays import Floats, Ints
 from ...base.report import attributes
 from ...meshes.mesh import Mesh
-from ...meshes.topology import cell_volumes, edge_lengths, facet_measures, measure_by_tag
+from ...meshes.topology import (
+    cell_volumes,
+    edge_lengths,
+    facet_measures,
+    facet_normals,
+    measure_by_tag,
+)
 from ..first_mesh import FirstMesh
+from ..geometry.plc import PLC
 from ..methods.stages import Stage
 
 
@@ -30,6 +37,10 @@ class FacetMeasures:
     region_error : float
         Largest difference of the volume of a region from that in the constrained mesh, relative to
         the volume of all.
+    volume_between : float
+        Volume between the facets of the geometry and those of the mesh, relative to the volume of
+        all: what becomes of facets that are planar to their flatness only. 0 in 2D and where
+        facets are smooth.
     regions : dict of int to float
         Volume, in 2D area, of the cells of each tag.
     """
@@ -37,6 +48,7 @@ class FacetMeasures:
     facet_error: float
     worst_facet: int
     region_error: float
+    volume_between: float
     regions: dict[int, float]
 
     @classmethod
@@ -57,17 +69,48 @@ class FacetMeasures:
         errors = {n: abs(found.get(n, 0.0) - size) / total for n, size in wanted.items()}
         worst = max(errors, key=lambda number: errors[number], default=-1)
         before, after = _volumes(first.mesh), _volumes(mesh)
+        volume = sum(before.values())
+        between = 0.0 if stage.numbered is None or plc.dim == 2 else _volume_between(plc, mesh)
         difference = max(abs(after.get(tag, 0.0) - size) for tag, size in before.items())
         return cls(
             facet_error=errors.get(worst, 0.0),
             worst_facet=worst if stage.numbered is not None else -1,
-            region_error=difference / sum(before.values()),
+            region_error=difference / volume,
+            volume_between=between / volume,
             regions=after,
         )
 
     def as_dict(self) -> dict[str, Any]:
         """Return JSON builtins only; the keys are those of the attributes."""
         return attributes(self)
+
+
+def _volume_between(plc: PLC, mesh: Mesh) -> float:
+    """Return the volume between the facets of a complex and those of a mesh with their numbers.
+
+    A facet and what is made of it have one border: the volumes of the pyramids from a point of the
+    facet over both differ by what is between them, where neither folds.
+    """
+    _, start = np.unique(plc.triangle_facets, return_index=True)
+    n = plc.n_facets
+    apex = np.zeros((n, 3))
+    apex[plc.triangle_facets[start]] = plc.points[plc.triangles[start, 0]]
+    normals = facet_normals(plc.points, plc.triangles)
+    upward = np.stack([np.bincount(plc.triangle_facets, axis, n) for axis in normals.T], axis=1)
+    given = _pyramids(plc.points, plc.triangles, plc.triangle_facets, apex, upward)
+    made = _pyramids(mesh.points, mesh.facets, mesh.facet_tags, apex, upward)
+    return float(np.abs(made - given)[np.unique(mesh.facet_tags)].sum())
+
+
+def _pyramids(
+    points: Floats, triangles: Ints, owners: Ints, apex: Floats, upward: Floats
+) -> Floats:
+    """Return the (f,) volumes over the triangles of each facet, seen from its upper side."""
+    normals = facet_normals(points, triangles)
+    heights = points[triangles[:, 0]] - apex[owners]
+    sides = np.sign(np.einsum("ti,ti->t", normals, upward[owners]))
+    volumes = sides * np.einsum("ti,ti->t", normals, heights) / 3.0
+    return np.bincount(owners, volumes, len(apex))
 
 
 def _rows(simplices: Ints) -> Ints:

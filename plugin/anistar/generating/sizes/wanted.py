@@ -45,17 +45,15 @@ class Wanted:
 def wanted_of(
     first: FirstMesh, size: Sizes | None, metric: Sizes | None, options: GenerateOptions
 ) -> Wanted:
-    """Return all that sizes, metric, names, regions and widths ask for.
+    """Return all that a size or a metric, names, regions and widths ask for.
 
     Delaunay refinement has cells of any size where nothing is asked for.
 
     Raises
     ------
     ValueError
-        If both a size and a metric are given, or one does not fit the geometry.
+        If the size or the metric does not fit the geometry.
     """
-    if size is not None and metric is not None:
-        raise ValueError("give a size or a metric, not both: intersect them where both hold")
     given, what = (size, "size") if metric is None else (metric, "metric")
     is_free = given is None and options.method == "remesh"
     wishes: list[Wish] = []
