@@ -164,6 +164,32 @@ def curved_results(dim):
     }
 
 
+def generated(dim):
+    """Digests of first meshes by every method, of a complex with a part inside."""
+    plc = complex_of(dim)
+    found = {}
+    for method, size in (("constrained", None), ("refine", 0.2), ("remesh", 0.2), ("remesh", None)):
+        made = anistar.generate(plc, size, method=method).mesh
+        found[f"generated {method} {size}"] = digest(made.points, made.cells, made.facets)
+    return found
+
+
+def complex_of(dim):
+    """A box with a turned box inside."""
+    corners = np.stack([a.ravel() for a in np.meshgrid(*[[0.0, 1.0]] * dim, indexing="ij")], 1)
+    inner = 0.35 + 0.3 * corners
+    inner[:, 0] += 0.11 * corners[:, 1] - 0.05 * corners[:, -1]
+    points = np.concatenate([corners, inner])
+    if dim == 2:
+        around = np.array([[0, 1], [1, 3], [3, 2], [2, 0]])
+        return anistar.PLC(points, edges=np.concatenate([around, 4 + around]))
+    sides = np.array(
+        [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    )
+    seeds = [anistar.Region((0.1,) * 3, 1), anistar.Region((0.5,) * 3, 2)]
+    return anistar.PLC(points, facets=[*sides.tolist(), *(8 + sides).tolist()], regions=seeds)
+
+
 def unit_length(points, tag):
     """Project onto the unit circle or sphere."""
     return points / np.sqrt((points * points).sum(axis=1, keepdims=True))
@@ -183,4 +209,5 @@ def digests(dim):
     mesh = box(dim, 12 if dim == 2 else 6)
     u = layer(mesh.points)
     found = recovered(mesh, u) | made_metrics(mesh, u) | adapted(mesh, u, 400.0) | curved(dim)
+    found |= generated(dim)
     return {f"{dim}D {name}": value for name, value in found.items()}
