@@ -4,18 +4,13 @@ import struct
 
 import numpy as np
 import pytest
+from geometry_files import is_cube, poly_text, written
 from solids import CORNERS, SIDES, grid, sphere
 
 from anistar import FormatError
-from anistar.generating import PLC, Region, read_plc, read_plc_with_report, write_plc
+from anistar.generating import read_plc, read_plc_with_report
 
 TRIANGLES = [t for a, b, c, d in SIDES for t in ([a, b, c], [a, c, d])]
-
-
-def written(folder, name, content):
-    path = folder / name
-    path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    return path
 
 
 def stl_text(solids):
@@ -35,10 +30,6 @@ def stl_binary(header=b"", count=None, corners=None, attribute=0):
     rows = b"".join(b"\0" * 12 + row.tobytes() + struct.pack("<H", attribute) for row in corners)
     n = len(corners) if count is None else count
     return header.ljust(80, b" ") + struct.pack("<I", n) + rows
-
-
-def is_cube(plc):
-    return (plc.n_points, plc.n_facets, len(plc.triangles), len(plc.segments)) == (8, 6, 12, 12)
 
 
 def test_the_solids_of_a_text_stl_are_tags_with_names(tmp_path):
@@ -250,37 +241,6 @@ def test_damaged_ply_files_are_refused(tmp_path, form):
             read_plc(written(tmp_path, "a.ply", content))
 
 
-POLY = """# a box with a hole in its lid, a rib and a point
-12 3 0 0
-{points}
-# facets
-7 1
-1 0 11
-4 1 4 3 2
-3 1 12  # the lid
-4 5 6 7 8
-4 9 10 11
-  12
-2 9 5
-1 0.5 0.5 1
-{sides}
-1 0 20
-2 9 10
-1
-1 0.5 0.5 0.5
-1
-1 0.1 0.1 0.1 3 0.001
-"""
-
-
-def poly_text():
-    lid = [[0.25, 0.25, 1], [0.75, 0.25, 1], [0.75, 0.75, 1], [0.25, 0.75, 1]]
-    rows = [f"{k} {x} {y} {z}" for k, (x, y, z) in enumerate([*CORNERS, *lid], start=1)]
-    sides = ["1 0 13\n4 " + " ".join(str(v + 1) for v in side) for side in SIDES[2:]]
-    text = POLY.format(points="\n".join(rows), sides="\n".join(sides))
-    return text.replace("7 1\n1 0 11", "6 1\n1 0 11").replace("1 0 20\n2 9 10\n", "")
-
-
 def test_a_poly_file_keeps_holes_edges_regions_and_markers(tmp_path):
     plc = read_plc(written(tmp_path, "a.poly", poly_text()))
     assert plc.n_facets == 6
@@ -327,69 +287,6 @@ def test_outlines_of_triangle_are_read(tmp_path):
     assert plc.edge_tags.tolist() == [5, 6, 7]
     assert plc.points_kept.tolist() == [3]
     assert plc.regions[0].tag == 8
-
-
-def cube(**more):
-    names = {(2, 1): "lower side", (2, 2): "others"}
-    return PLC(CORNERS, facets=SIDES, facet_tags=[1, 2, 2, 2, 2, 2], names=names, **more)
-
-
-@pytest.mark.parametrize("suffix", [".stl", ".obj", ".poly", ".smesh", ".msh", ".mesh", ".meshb"])
-def test_what_is_written_is_read_again(tmp_path, suffix):
-    plc = cube()
-    path = tmp_path / f"a{suffix}"
-    write_plc(path, plc)
-    again = read_plc(path)
-    assert is_cube(again)
-    order = np.lexsort(again.points.T[::-1])
-    assert np.array_equal(again.points[order], plc.points[np.lexsort(plc.points.T[::-1])])
-    assert sorted(again.facet_tags.tolist()) == [1, 2, 2, 2, 2, 2]
-    if suffix not in (".poly", ".smesh", ".meshb"):
-        assert again.names == plc.names
-
-
-@pytest.mark.parametrize("suffix", [".msh", ".mesh", ".meshb"])
-def test_formats_of_meshes_keep_edges_and_points(tmp_path, suffix):
-    path = tmp_path / f"a{suffix}"
-    write_plc(path, cube(edges=[[0, 6], [0, 1]], edge_tags=[4, 5], points_kept=[3]))
-    again = read_plc(path)
-    assert again.edges.tolist() == [[0, 6], [0, 1]]
-    assert again.edge_tags.tolist() == [4, 5]
-    assert again.points_kept.tolist() == [3]
-
-
-@pytest.mark.parametrize("suffix", [".poly", ".smesh"])
-def test_holes_and_regions_of_a_complex_are_written(tmp_path, suffix):
-    first = read_plc(written(tmp_path, "a.poly", poly_text()))
-    path = tmp_path / f"b{suffix}"
-    write_plc(path, first)
-    again = read_plc(path)
-    assert np.array_equal(again.points, first.points)
-    assert again.regions[0].size == pytest.approx(first.regions[0].size)
-    assert again.holes.tolist() == first.holes.tolist()
-    if suffix == ".poly":
-        assert again.facets[:] == first.facets[:]
-
-
-@pytest.mark.parametrize("suffix", [".poly", ".msh", ".mesh"])
-def test_outlines_are_written_and_read(tmp_path, suffix):
-    plc = PLC([[0, 0], [1, 0], [1, 1]], edges=[[0, 1], [1, 2], [0, 2]], edge_tags=[1, 2, 3])
-    path = tmp_path / f"a{suffix}"
-    write_plc(path, plc)
-    again = read_plc(path)
-    assert again.dim == 2
-    assert again.segment_tags.tolist() == plc.segment_tags.tolist()
-    with pytest.raises(FormatError, match="this is an outline"):
-        write_plc(tmp_path / "a.stl", plc)
-
-
-def test_what_a_format_does_not_carry_is_told(tmp_path, caplog):
-    plc = cube(regions=[Region((0.5, 0.5, 0.5), 1)], edges=[[0, 6]])
-    write_plc(tmp_path / "a.stl", plc)
-    for what in ("regions", "edges"):
-        assert f"this format does not carry {what}" in caplog.text
-    with pytest.raises(FormatError, match="geometry is written as"):
-        write_plc(tmp_path / "a.step", plc)
 
 
 @pytest.mark.parametrize("suffix", [".vtp", ".vtk", ".ply", ".stl"])

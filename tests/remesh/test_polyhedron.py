@@ -112,3 +112,37 @@ def test_the_shape_is_checked_and_read_from_a_dict():
         RemeshOptions(shape="round")
     options = AdaptOptions.from_dict({"shape": "polyhedron", "target_complexity": 10})
     assert options.remesh.shape == "polyhedron"
+
+
+FACETED = RemeshOptions(shape="faceted")
+
+
+def of_floats(mesh):
+    """A turned mesh in single precision, its sides tagged: they are planes to 1e-7 only."""
+    c, s = math.cos(0.7), math.sin(0.7)
+    turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ [[1, 0, 0], [0, c, -s], [0, s, c]]
+    middle = mesh.points[mesh.facets].mean(axis=1)
+    side = 2 * np.abs(middle - 0.5).argmax(axis=1)
+    side += middle[np.arange(len(middle)), side // 2] > 0.5
+    points = (mesh.points @ turn.T).astype(np.float32)
+    return Mesh(points=points, cells=mesh.cells, facets=mesh.facets, facet_tags=side + 1)
+
+
+def test_facets_of_floats_are_planes_when_faceted_and_nets_of_ridges_when_not():
+    mesh = of_floats(cube(4))
+    faceted, exact = (
+        remesh(mesh, uniform(mesh, 0.3), options) for options in (FACETED, POLYHEDRON)
+    )
+    assert validate(faceted.mesh) == []
+    assert faceted.report.counts["curved"] == 0
+    assert len(faceted.mesh.corners) <= 8
+    assert faceted.mesh.n_points < exact.mesh.n_points
+    assert faceted.report.statistics["edge_unit"] > exact.report.statistics["edge_unit"]
+    np.testing.assert_allclose(measures(faceted.mesh), measures(mesh), rtol=3e-7)
+
+
+def test_faceted_is_a_polyhedron_where_the_plane_is_concerned():
+    geometry = annulus(2)
+    new = remesh(geometry, uniform(geometry, 0.3), FACETED).mesh
+    assert validate(new) == []
+    np.testing.assert_allclose(measures(new), measures(geometry), rtol=1e-12)
