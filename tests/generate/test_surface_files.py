@@ -7,6 +7,7 @@ import pytest
 from geometry_files import is_cube, poly_text, written
 from solids import CORNERS, SIDES, grid, sphere
 
+import anistar
 from anistar import FormatError
 from anistar.generating import read_plc, read_plc_with_report
 
@@ -369,3 +370,11 @@ def test_damaged_bytes_raise_nothing_but_format_errors(tmp_path):
                     read_plc(written(tmp_path, name, bytes(data)))
                 except FormatError:
                     pass
+
+
+def test_every_function_takes_a_file_for_a_complex(tmp_path):
+    path = written(tmp_path, "a.stl", stl_binary())
+    assert anistar.check_plc(path) == []
+    assert is_cube(anistar.repaired(path, "orient")[0])
+    assert anistar.wrap(path, 0.1).plc.n_facets > 6
+    assert anistar.generate(path, method="constrained").mesh.n_points == 8

@@ -70,3 +70,8 @@ def test_what_a_format_does_not_carry_is_told(tmp_path, caplog):
         assert f"this format does not carry {what}" in caplog.text
     with pytest.raises(FormatError, match="geometry is written as"):
         write_plc(tmp_path / "a.step", plc)
+
+
+def test_a_complex_is_written_and_nothing_else(tmp_path):
+    with pytest.raises(TypeError, match="plc must be PLC, not"):
+        write_plc(tmp_path / "a.stl", tmp_path / "b.stl")

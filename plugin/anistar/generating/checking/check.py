@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ... import _core
 from ..geometry.plc import PLC
+from ..given import as_plc
 from .problem import KINDS, PLCProblem
 
 #: In diagonals of the complex: what is closer without touching is a near-miss.
@@ -14,7 +17,7 @@ LISTED = 20
 
 
 def check_plc(
-    plc: PLC, *, listed: int = LISTED, near_distance: float = NEAR_DISTANCE
+    geometry: Any, *, listed: int = LISTED, near_distance: float = NEAR_DISTANCE
 ) -> list[PLCProblem]:
     """Find what is wrong with a complex: crossing facets, open borders, repeated points and such.
 
@@ -23,7 +26,8 @@ def check_plc(
 
     Parameters
     ----------
-    plc : PLC
+    geometry : PLC, path, or surface of another package
+        What `generate` takes.
     listed : int
         So many problems of each kind are listed; each tells how many there are.
     near_distance : float
@@ -40,6 +44,7 @@ def check_plc(
     listed where nothing can be inside: of surfaces that are closed nowhere, unless they are in a
     box around one that is.
     """
+    plc = as_plc(geometry)
     if plc.dim == 2:
         found = _core.check_pslg(
             plc.points, plc.segments, plc.points_kept, listed=listed, near_distance=near_distance

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from ...base.arrays import Bools
 from ...base.errors import MeshingError
 from ..checking import check_plc
 from ..geometry.plc import PLC
+from ..given import as_plc
 from .report import RepairReport
 from .soup import Soup
 from .stitching import merged, stitched, without_flat
@@ -26,13 +28,13 @@ _MEETING = ("crossing", "overlap", "touching", "point on edge", "point on facet"
 
 
 def repaired(
-    plc: PLC, repair: str = "none", *, tolerance: float | None = None
+    geometry: Any, repair: str = "none", *, tolerance: float | None = None
 ) -> tuple[PLC, RepairReport]:
     """Return a complex with what is wrong put right, and what that changed.
 
     Parameters
     ----------
-    plc : PLC
+    geometry : PLC, path, or surface of another package
         In 3D, unless nothing is asked for.
     repair : {"none", "orient", "stitch", "resolve"}
         "orient" turns facets to one sense, outward where they bound a volume. "stitch" makes
@@ -56,6 +58,7 @@ def repaired(
     """
     if repair not in REPAIRS:
         raise ValueError(f"repair must be one of {', '.join(REPAIRS)}, not {repair!r}")
+    plc = as_plc(geometry)
     if repair == "none":
         return plc, RepairReport()
     if plc.dim == 2:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ... import _core
 from ..geometry.plc import PLC
+from ..given import as_plc
 
 #: Openings that are smaller than so many offsets are closed, unless alpha is given.
 ALPHA_PER_OFFSET = 20.0
@@ -28,7 +29,7 @@ class Wrapped(NamedTuple):
     distance: float
 
 
-def wrap(surface: PLC, offset: float, alpha: float | None = None) -> Wrapped:
+def wrap(surface: Any, offset: float, alpha: float | None = None) -> Wrapped:
     """Wrap a surface that is open, crosses itself or is a mere soup of triangles.
 
     The wrap is another surface, at the offset from the given one: corners are rounded, tags and
@@ -36,7 +37,7 @@ def wrap(surface: PLC, offset: float, alpha: float | None = None) -> Wrapped:
 
     Parameters
     ----------
-    surface : PLC
+    surface : PLC, path, or surface of another package
         In 3D.
     offset : float
         Distance of the wrap from the surface, a length.
@@ -57,10 +58,11 @@ def wrap(surface: PLC, offset: float, alpha: float | None = None) -> Wrapped:
     for name, length in (("offset", offset), ("alpha", alpha)):
         if not (length > 0 and np.isfinite(length)):
             raise ValueError(f"{name} must be a positive length, not {length}")
-    if surface.dim == 2 or len(surface.triangles) == 0:
+    given = as_plc(surface)
+    if given.dim == 2 or len(given.triangles) == 0:
         raise ValueError("only surfaces in 3D can be wrapped")
     points, triangles, _ = _core.wrap_triangles(
-        surface.points, surface.triangles, float(alpha), float(offset)
+        given.points, given.triangles, float(alpha), float(offset)
     )
-    _, distances = _core.nearest_facets3(surface.points, surface.triangles, points)
+    _, distances = _core.nearest_facets3(given.points, given.triangles, points)
     return Wrapped(PLC.from_surface(points, triangles), float(distances.max()))

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...base.arguments import require
 from ...base.arrays import AnyArray
 from ...base.atomic import replaced
 from ...base.errors import FormatError
@@ -50,6 +51,7 @@ def write_plc(path: PathLike, plc: PLC) -> None:
     -----
     What the format does not carry is a logged warning.
     """
+    require(PLC, plc=plc)
     path = Path(path)
     suffix = suffix_of(path)
     if suffix not in _WRITERS:
